@@ -1,0 +1,66 @@
+//! Cushions: overlap, mirror, push back.
+
+use super::Particle;
+use super::observer::Observer;
+use crate::physics::cushion_impulse;
+use crate::recording::{EventKind, Wall};
+use crate::scene::Cushions;
+
+/// The walls in the slides' order, +x -x +z -z, then +y -y which the slides do not have.
+const ORDER: [Wall; 6] =
+    [Wall::PlusX, Wall::MinusX, Wall::PlusZ, Wall::MinusZ, Wall::PlusY, Wall::MinusY];
+
+/// Slides' `cushion()`: an else-if chain, so one wall a ball and step.
+///
+/// A ball that overlaps a wall and moves into it is mirrored; whether it does or not, it is
+/// pushed back by (1 + e) times the overlap.
+///
+/// DEVIATES: the slides' cushions are elastic; here `2.0` stands as `1.0 + e`, the same bits at
+/// e = 1. With `half_height` the chain goes on to the walls +y and -y.
+#[inline]
+pub(super) fn bounce(particles: &mut [Particle], effect: &Cushions, observer: &mut impl Observer) {
+    let walls = if effect.half_height.is_some() { 6 } else { 4 };
+    let half = [effect.half_width, effect.half_height.unwrap_or(f64::INFINITY), effect.half_length];
+    for (body, particle) in particles.iter_mut().enumerate() {
+        for wall in &ORDER[..walls] {
+            let (axis, side) = wall.axis_and_side();
+            if bounce_off(particle, axis, side, half[axis], effect.restitution, |impulse| {
+                observer.note(EventKind::Cushion { body, wall: *wall }, impulse);
+            }) {
+                break;
+            }
+        }
+    }
+}
+
+/// One link of the chain: whether the ball overlaps this wall, which is then dealt with.
+#[inline]
+fn bounce_off(
+    particle: &mut Particle,
+    axis: usize,
+    side: f64,
+    half: f64,
+    restitution: f64,
+    note: impl FnOnce(f64),
+) -> bool {
+    let (coordinate, r) = (particle.position[axis], particle.radius);
+    let penetration = if side > 0.0 {
+        if coordinate + r <= half {
+            return false;
+        }
+        coordinate + r - half
+    } else {
+        if coordinate - r >= -half {
+            return false;
+        }
+        -half - coordinate + r
+    };
+    let normal = -side;
+    let normal_velocity = particle.velocity[axis] * normal;
+    if normal_velocity < 0.0 {
+        note(cushion_impulse(restitution, particle.mass, normal_velocity));
+        particle.velocity[axis] -= (1.0 + restitution) * normal_velocity * normal;
+    }
+    particle.position[axis] += (1.0 + restitution) * penetration * normal;
+    true
+}

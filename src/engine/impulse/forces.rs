@@ -1,0 +1,103 @@
+//! Forces, kick, drift and rest.
+
+use super::Particle;
+use super::observer::Observer;
+use crate::physics::{Vector3, attraction, length, spring_damper};
+use crate::recording::EventKind;
+use crate::scene::{Attraction, Drag, Rest};
+
+/// A spring between two particles, its ends as indices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpringBetween {
+    pub ends: [usize; 2],
+    pub stiffness: f64,
+    pub rest_length: f64,
+    pub damping: f64,
+}
+
+/// Slides' `resetForce()`.
+#[inline]
+pub(super) fn clear(particles: &mut [Particle]) {
+    for particle in particles {
+        particle.force = Vector3::zeros();
+    }
+}
+
+/// Slides' loop over `computeAttraction(i, j)`, i < j.
+#[inline]
+pub(super) fn attract(particles: &mut [Particle], effect: Attraction) {
+    for i in 0..particles.len() {
+        let (head, tail) = particles.split_at_mut(i + 1);
+        let a = &mut head[i];
+        for b in tail {
+            let masses = [a.mass, b.mass];
+            let force =
+                attraction(effect.constant, effect.softening, masses, &a.position, &b.position);
+            a.force += force;
+            b.force += -force;
+        }
+    }
+}
+
+/// Slides' `floorDrag()`.
+#[inline]
+pub(super) fn drag(particles: &mut [Particle], effect: Drag) {
+    for particle in particles {
+        particle.force += particle.velocity * -effect.coefficient;
+    }
+}
+
+/// Slides' final model of the spring-damper, spring by spring.
+#[inline]
+pub(super) fn springs(particles: &mut [Particle], springs: &[SpringBetween]) {
+    for spring in springs {
+        let [a, b] = spring.ends.map(|end| &particles[end]);
+        let force = spring_damper(
+            spring.stiffness,
+            spring.rest_length,
+            spring.damping,
+            [&a.position, &b.position],
+            [&a.velocity, &b.velocity],
+        );
+        particles[spring.ends[0]].force += force;
+        particles[spring.ends[1]].force += -force;
+    }
+}
+
+/// Uniform gravity, which the slides' particle has a field for and never uses.
+#[inline]
+pub(super) fn gravity(particles: &mut [Particle], acceleration: &Vector3) {
+    for particle in particles {
+        particle.force += acceleration * particle.mass;
+    }
+}
+
+/// First line of slides' `forceIntegration()`: `vel = vel + dt*((1.0/mass) * force)`.
+#[inline]
+pub(super) fn kick(particles: &mut [Particle], dt: f64) {
+    for particle in particles {
+        particle.velocity += particle.force * (1.0 / particle.mass) * dt;
+    }
+}
+
+/// Second line of slides' `forceIntegration()`: `loc = loc + dt*vel`.
+#[inline]
+pub(super) fn drift(particles: &mut [Particle], dt: f64) {
+    for particle in particles {
+        particle.position += particle.velocity * dt;
+    }
+}
+
+/// Last line of slides' `simulate()`: slower than the rest speed is standing.
+#[inline]
+pub(super) fn rest(particles: &mut [Particle], effect: Rest, observer: &mut impl Observer) {
+    for (body, particle) in particles.iter_mut().enumerate() {
+        let speed = length(&particle.velocity);
+        if speed < effect.speed {
+            if speed > 0.0 {
+                observer.note(EventKind::Rest { body }, particle.mass * speed);
+            }
+            particle.velocity = Vector3::zeros();
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The recorder: drives a simulation from sample to sample and keeps what it sees.
+
+use super::{EngineSpec, StepGrid, prepare};
+use crate::error::Result;
+use crate::recording::{Outcome, Recording, initial_states};
+use crate::scene::Scene;
+
+/// Runs an engine on a scene and records every sample and event.
+///
+/// The recording ends at the last sample in which everything is finite.
+///
+/// # Errors
+/// As [`prepare`]. A blow-up is no error but the recording's outcome.
+pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
+    let mut simulation = prepare(scene, spec, dt)?;
+    let mut recording = Recording::at_start(&spec.name, scene);
+    recording.step = Some(StepGrid::new(scene, dt)?.step);
+    let mut states = initial_states(scene);
+    for sample in 1..=scene.sample_count() {
+        let halt = simulation.advance_to(sample, Some(&mut recording.events));
+        simulation.state_into(&mut states);
+        let lost = states.iter().position(|state| !state.is_finite());
+        let time = scene.sample_time(sample);
+        let blown_up = lost.map(|body| Outcome::NonFinite { time, body });
+        if let Some(outcome) = halt.or(blown_up) {
+            recording.outcome = outcome;
+            recording.events.truncate_after(scene.sample_time(sample - 1));
+            break;
+        }
+        recording.push(&states);
+        recording.events.end_interval();
+    }
+    recording.work = simulation.work();
+    Ok(recording)
+}

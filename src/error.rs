@@ -1,0 +1,157 @@
+//! The one error type of carom.
+//!
+//! An error means that carom could not run; it is one line that names the place and the
+//! remedy. A simulation that blows up is no error but a result: see
+//! [`Outcome`](crate::recording::Outcome).
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Shorthand for results of carom.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Everything that can keep carom from running.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// A scene file says something that is not a scene.
+    #[error("{file}:{line}:{column}: {message}")]
+    SceneFile {
+        /// The scene file.
+        file: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in characters, counted from 1.
+        column: usize,
+        /// What was found, and what would be right.
+        message: String,
+    },
+    /// A scene built by code is not a scene.
+    #[error("scene `{scene}`: {message}")]
+    Scene {
+        /// Name of the scene.
+        scene: String,
+        /// The field, what was found, and what would be right.
+        message: String,
+    },
+    /// A scene cannot be written as a file.
+    #[error("scene `{scene}` cannot be written as TOML: {source}")]
+    SceneWrite {
+        /// Name of the scene.
+        scene: String,
+        /// What the writer said.
+        source: toml::ser::Error,
+    },
+    /// A file is not text.
+    #[error("{file}: not UTF-8 from byte {byte} on; save the file as UTF-8 text")]
+    NotUtf8 {
+        /// The file.
+        file: String,
+        /// Offset of the first wrong byte.
+        byte: usize,
+    },
+    /// A file or folder could not be read.
+    #[error("{path}: cannot be read: {source}")]
+    Read {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file or folder could not be written.
+    #[error("{path}: cannot be written: {source}; nothing was left half-written, choose another place with --out or make room")]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A table (CSV) does not hold what it should.
+    #[error("{file}, line {line}: {message}")]
+    Table {
+        /// The file.
+        file: String,
+        /// Line, counted from 1; the header is line 1.
+        line: u64,
+        /// What was found, and what would be right.
+        message: String,
+    },
+    /// No engine of that name.
+    #[error("no engine is called `{name}`; there are: {known}")]
+    UnknownEngine {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// An engine that this build leaves out.
+    #[error("engine `{name}` is not in this build; build carom with the feature `{feature}` (it is on by default)")]
+    EngineNotBuilt {
+        /// The engine.
+        name: String,
+        /// The cargo feature that brings it.
+        feature: &'static str,
+    },
+    /// The same engine twice.
+    #[error("engine `{name}` is asked for twice; name each engine once")]
+    EngineTwice {
+        /// The engine.
+        name: String,
+    },
+    /// No scene file and no case of that name.
+    #[error("`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases{hint}")]
+    UnknownCase {
+        /// The name asked for.
+        name: String,
+        /// The nearest names, as a suggestion, or nothing.
+        hint: String,
+    },
+    /// A time step that cannot be taken.
+    #[error("time step {dt} s: {message}")]
+    Step {
+        /// The step asked for.
+        dt: f64,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// A file would be lost.
+    #[error("{path}: exists already; choose another name, or say --force to replace it")]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A number that an argument does not allow.
+    #[error("--{argument} {found}: {remedy}")]
+    Argument {
+        /// Name of the argument, without dashes.
+        argument: &'static str,
+        /// What was given.
+        found: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// A page could not be filled in: a fault of carom's own templates.
+    #[error("page template: {0}")]
+    Template(#[from] minijinja::Error),
+    /// A summary could not be written as JSON.
+    #[error("JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A picture could not be drawn.
+    #[cfg(feature = "plots")]
+    #[error("picture: {0}")]
+    Picture(String),
+}
+
+impl Error {
+    /// An unreadable file or folder.
+    #[must_use]
+    pub fn read(path: &Path, source: std::io::Error) -> Self {
+        Self::Read { path: path.to_owned(), source }
+    }
+
+    /// An unwritable file or folder.
+    #[must_use]
+    pub fn write(path: &Path, source: std::io::Error) -> Self {
+        Self::Write { path: path.to_owned(), source }
+    }
+}

@@ -1,0 +1,110 @@
+//! What an engine produced: states on the scene's time grid, events, work, and how it ended.
+
+mod event;
+mod events_csv;
+mod number;
+mod outcome;
+mod trajectory_csv;
+
+pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
+pub use events_csv::{read_events, write_events};
+pub use number::finite_or_blank;
+pub use outcome::Outcome;
+pub use trajectory_csv::{read_trajectory, write_trajectory};
+
+use serde::Serialize;
+
+use crate::physics::BodyState;
+use crate::scene::Scene;
+
+/// Counted work of a simulation, independent of the machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Work {
+    /// Steps taken.
+    pub steps: u64,
+    /// Pairs of bodies looked at for a contact, where the engine counts them.
+    pub pair_tests: u64,
+    /// Pair and body forces evaluated, where the engine counts them.
+    pub force_evaluations: u64,
+}
+
+/// One run of one engine on one scene, or independent evidence of the same shape.
+///
+/// Sample n stands at `scene.sample_time(n)`; the recording ends with the last finite sample.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// The voice: an engine's name, or `truth`.
+    pub voice: String,
+    /// The step taken, s; none for evidence without steps.
+    pub step: Option<f64>,
+    /// States, shape `[sample][body]` laid flat.
+    states: Vec<BodyState>,
+    body_count: usize,
+    /// Impacts and stops in order of time.
+    pub events: EventLog,
+    /// Counted work.
+    pub work: Work,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl Recording {
+    /// A recording that holds only the scene's start.
+    #[must_use]
+    pub fn at_start(voice: &str, scene: &Scene) -> Self {
+        let mut recording = Self::empty(voice, scene.bodies.len());
+        recording.states = initial_states(scene);
+        recording
+    }
+
+    fn empty(voice: &str, body_count: usize) -> Self {
+        Self {
+            voice: voice.to_owned(),
+            step: None,
+            states: Vec::new(),
+            body_count,
+            events: EventLog::default(),
+            work: Work::default(),
+            outcome: Outcome::Finished,
+        }
+    }
+
+    /// Appends the states of the next sample. Shape of `states`: `[body]`.
+    pub fn push(&mut self, states: &[BodyState]) {
+        debug_assert_eq!(states.len(), self.body_count);
+        self.states.extend_from_slice(states);
+    }
+
+    /// How many samples there are, the start included.
+    #[must_use]
+    pub fn sample_count(&self) -> usize {
+        self.states.len() / self.body_count
+    }
+
+    /// The states at a sample. Shape: `[body]`.
+    ///
+    /// # Panics
+    /// If the sample lies past [`sample_count`](Self::sample_count).
+    #[must_use]
+    pub fn sample(&self, sample: usize) -> &[BodyState] {
+        &self.states[sample * self.body_count..][..self.body_count]
+    }
+
+    /// All samples in order. Shape of each item: `[body]`.
+    pub fn samples(&self) -> impl ExactSizeIterator<Item = &[BodyState]> {
+        self.states.chunks_exact(self.body_count)
+    }
+}
+
+/// The states with which a scene starts. Shape: `[body]`.
+///
+/// A negative zero becomes a positive one: that no engine ever meets a negative zero is what
+/// makes an absent effect equal its neutral value bit for bit.
+#[must_use]
+pub fn initial_states(scene: &Scene) -> Vec<BodyState> {
+    let state = |body: &crate::scene::Body| BodyState {
+        position: body.position.map(|x| x + 0.0).into(),
+        velocity: body.velocity.map(|v| v + 0.0).into(),
+    };
+    scene.bodies.iter().map(state).collect()
+}

@@ -1,0 +1,112 @@
+//! An elastic gas of hard spheres that starts on a lattice.
+
+use super::Random;
+use crate::error::{Error, Result};
+use crate::scene::{Body, Contact, Cushions, Effects, LengthUnit, Scene, Units};
+
+/// Equal spheres on a face-centred cubic lattice in a closed cubic box, with random velocities.
+///
+/// Four spheres a cell, `4 cells³` in all. The lattice constant follows from the filling
+/// fraction f: `a = (16 pi r³ / (3 f))^(1/3)`. Velocities are normal with unit variance, with
+/// the mean taken out, so that the gas as a whole is at rest.
+/// Source: Alder and Wainwright 1959, the start of most hard-sphere studies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gas {
+    /// Lattice cells along each edge of the box.
+    pub cells: usize,
+    /// Filling fraction of the box, below 0.7404 (close packing).
+    pub filling: f64,
+    /// Seed of the velocities.
+    pub seed: u64,
+}
+
+impl Default for Gas {
+    fn default() -> Self {
+        Self { cells: 6, filling: 0.49, seed: 1 }
+    }
+}
+
+const RADIUS: f64 = 0.5;
+
+/// The four places in a cell, in lattice constants.
+const BASIS: [[f64; 3]; 4] =
+    [[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]];
+
+impl Gas {
+    /// Makes the scene, in natural units: radius 0.5, mass 1, one unit of speed a degree of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if there is no cell, too many of them, or no room between the spheres.
+    pub fn scene(&self) -> Result<Scene> {
+        let packed = std::f64::consts::PI / 18.0_f64.sqrt();
+        if !(self.filling > 0.0 && self.filling < packed) {
+            return Err(Error::Argument {
+                argument: "filling",
+                found: self.filling.to_string(),
+                remedy: format!("give a fraction above 0 and below {packed:.4}, close packing"),
+            });
+        }
+        if !(1..=63).contains(&self.cells) {
+            return Err(Error::Argument {
+                argument: "cells",
+                found: self.cells.to_string(),
+                remedy: "give 1 to 63 cells an edge (4 to 1,000,188 spheres)".into(),
+            });
+        }
+        #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+        let cells = self.cells as f64;
+        let constant = (16.0 * std::f64::consts::PI * RADIUS.powi(3) / (3.0 * self.filling)).cbrt();
+        let half = 0.5 * cells * constant;
+        let scene = Scene {
+            name: format!("gas-{}", 4 * self.cells.pow(3)),
+            title: Some(format!("elastic gas of {} spheres", 4 * self.cells.pow(3))),
+            source: Some(format!("carom scenes generate gas --seed {}", self.seed)),
+            watch: None,
+            duration: 1.0,
+            sample_every: 0.0625,
+            units: Units { length: LengthUnit::None },
+            bodies: self.bodies(constant, half),
+            effects: Effects {
+                contact: Some(Contact { restitution: 1.0 }),
+                cushions: Some(Cushions {
+                    half_width: half,
+                    half_length: half,
+                    half_height: Some(half),
+                    restitution: 1.0,
+                }),
+                ..Effects::default()
+            },
+        };
+        scene.checked()?;
+        Ok(scene)
+    }
+
+    fn bodies(&self, constant: f64, half: f64) -> Vec<Body> {
+        let mut random = Random::new(self.seed);
+        let mut bodies = Vec::new();
+        for cell in 0..self.cells.pow(3) {
+            let corner =
+                [cell % self.cells, cell / self.cells % self.cells, cell / self.cells.pow(2)];
+            for place in BASIS {
+                #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+                let position =
+                    [0, 1, 2].map(|axis| constant * (corner[axis] as f64 + place[axis]) - half);
+                bodies.push(Body {
+                    name: format!("s{}", bodies.len()),
+                    mass: 1.0,
+                    radius: RADIUS,
+                    position,
+                    velocity: [(); 3].map(|()| random.normal()),
+                });
+            }
+        }
+        #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
+        let count = bodies.len() as f64;
+        let mean =
+            [0, 1, 2].map(|axis| bodies.iter().map(|b| b.velocity[axis]).sum::<f64>() / count);
+        for body in &mut bodies {
+            body.velocity = [0, 1, 2].map(|axis| body.velocity[axis] - mean[axis]);
+        }
+        bodies
+    }
+}
