@@ -59,7 +59,9 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A file or folder could not be written.
-    #[error("{path}: cannot be written: {source}; nothing was left half-written, choose another place with --out or make room")]
+    #[error(
+        "{path}: cannot be written: {source}; nothing was left half-written, choose another place with --out or make room"
+    )]
     Write {
         /// The file or folder.
         path: PathBuf,
@@ -85,7 +87,9 @@ pub enum Error {
         known: String,
     },
     /// An engine that this build leaves out.
-    #[error("engine `{name}` is not in this build; build carom with the feature `{feature}` (it is on by default)")]
+    #[error(
+        "engine `{name}` is not in this build; build carom with the feature `{feature}` (it is on by default)"
+    )]
     EngineNotBuilt {
         /// The engine.
         name: String,
@@ -99,7 +103,9 @@ pub enum Error {
         name: String,
     },
     /// No scene file and no case of that name.
-    #[error("`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases{hint}")]
+    #[error(
+        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases{hint}"
+    )]
     UnknownCase {
         /// The name asked for.
         name: String,
@@ -112,6 +118,15 @@ pub enum Error {
         /// The step asked for.
         dt: f64,
         /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// A report of nothing.
+    #[error("there is no case to report on: the folder holds no <case>/scene.toml")]
+    NoCases,
+    /// The handler of Ctrl-C could not be set.
+    #[error("Ctrl-C cannot be handled: {message}")]
+    Interrupt {
+        /// What the system said.
         message: String,
     },
     /// A file would be lost.
@@ -137,21 +152,31 @@ pub enum Error {
     #[error("JSON: {0}")]
     Json(#[from] serde_json::Error),
     /// A picture could not be drawn.
-    #[cfg(feature = "plots")]
-    #[error("picture: {0}")]
-    Picture(String),
+    #[error("picture {name}: {message}")]
+    Picture {
+        /// The file that it would have been.
+        name: &'static str,
+        /// What was wrong.
+        message: String,
+    },
 }
 
 impl Error {
     /// An unreadable file or folder.
     #[must_use]
     pub fn read(path: &Path, source: std::io::Error) -> Self {
-        Self::Read { path: path.to_owned(), source }
+        Self::Read {
+            path: path.to_owned(),
+            source,
+        }
     }
 
     /// An unwritable file or folder.
     #[must_use]
     pub fn write(path: &Path, source: std::io::Error) -> Self {
-        Self::Write { path: path.to_owned(), source }
+        Self::Write {
+            path: path.to_owned(),
+            source,
+        }
     }
 }

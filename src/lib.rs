@@ -8,10 +8,16 @@
 //! ```
 //!
 //! Each module imports only from those above it in this list: [`error`], [`scene`],
-//! [`physics`], [`recording`], [`engine`].
+//! [`physics`], [`recording`], [`engine`], [`case`], [`compare`], [`study`],
+//! [`report`], [`cli`].
 
+pub mod case;
+pub mod cli;
+pub mod compare;
 pub mod engine;
 pub mod error;
 pub mod physics;
 pub mod recording;
+pub mod report;
 pub mod scene;
+pub mod study;

@@ -1,3 +1,5 @@
 //! The command line of carom.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    carom::cli::main()
+}

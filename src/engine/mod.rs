@@ -73,10 +73,26 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
         #[cfg(not(feature = "rapier"))]
         EngineKind::Rapier(_) => return Err(not_built(spec)),
     };
-    Ok(Plan { engine: spec.name.clone(), step: grid.step, phases })
+    Ok(Plan {
+        engine: spec.name.clone(),
+        step: grid.step,
+        phases,
+    })
 }
 
 #[cfg(not(feature = "rapier"))]
 fn not_built(spec: &EngineSpec) -> crate::error::Error {
-    crate::error::Error::EngineNotBuilt { name: spec.name.clone(), feature: "rapier" }
+    crate::error::Error::EngineNotBuilt {
+        name: spec.name.clone(),
+        feature: "rapier",
+    }
+}
+
+/// Placeholder until merge.
+pub fn notes(_scene: &Scene, _spec: &EngineSpec) -> Vec<String> {
+    Vec::new()
+}
+/// Versions.
+pub fn versions() -> std::collections::BTreeMap<&'static str, String> {
+    std::collections::BTreeMap::from([("carom", env!("CARGO_PKG_VERSION").to_owned())])
 }

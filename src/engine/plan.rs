@@ -15,7 +15,10 @@ impl Phase {
     /// A phase and its method.
     #[must_use]
     pub fn new(name: &'static str, method: impl Into<String>) -> Self {
-        Self { name, method: method.into() }
+        Self {
+            name,
+            method: method.into(),
+        }
     }
 }
 

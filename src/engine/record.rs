@@ -24,7 +24,9 @@ pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
         let blown_up = lost.map(|body| Outcome::NonFinite { time, body });
         if let Some(outcome) = halt.or(blown_up) {
             recording.outcome = outcome;
-            recording.events.truncate_after(scene.sample_time(sample - 1));
+            recording
+                .events
+                .truncate_after(scene.sample_time(sample - 1));
             break;
         }
         recording.push(&states);

@@ -94,12 +94,81 @@ impl RapierSettings {
     }
 }
 
+impl EngineSpec {
+    /// Whether this build has the engine.
+    #[must_use]
+    pub fn is_built(&self) -> bool {
+        match self.kind {
+            EngineKind::Impulse => true,
+            EngineKind::Rapier(_) => cfg!(feature = "rapier"),
+        }
+    }
+
+    /// The settings in a sentence.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        match &self.kind {
+            EngineKind::Impulse => "Symplectic Euler, impulses at the first overlap, push-out by \
+                                    (1 + e)/2 of it on each side."
+                .to_owned(),
+            EngineKind::Rapier(settings) => settings.describe(),
+        }
+    }
+}
+
+impl RapierSettings {
+    fn describe(&self) -> String {
+        let krate = match self.precision {
+            Precision::Single => "rapier3d (f32)",
+            Precision::Double => "rapier3d-f64",
+        };
+        let forces = match self.forces {
+            Forces::Native => "drag, springs and gravity by Rapier's own features",
+            Forces::Lecture => "drag, springs and gravity as the lecture's forces",
+        };
+        let mut changed = Vec::new();
+        changed.extend(
+            self.solver_iterations
+                .map(|n| format!("num_solver_iterations {n}")),
+        );
+        changed.extend(
+            self.prediction_distance
+                .map(|d| format!("normalized_prediction_distance {d:e}")),
+        );
+        changed.extend(
+            self.contact_recycling
+                .map(|on| format!("contact_recycling {on}")),
+        );
+        changed.extend(
+            self.max_ccd_substeps
+                .map(|n| format!("max_ccd_substeps {n}")),
+        );
+        if !self.speed_cap {
+            changed.push("no cap of speeds".to_owned());
+        }
+        let changed = if changed.is_empty() {
+            "stock parameters".to_owned()
+        } else {
+            changed.join(", ")
+        };
+        format!("{krate}: {forces}; {changed}; friction 0, rotations locked, no sleeping.")
+    }
+}
+
 /// Every engine, in the order in which reports list them.
 #[must_use]
 pub fn engines() -> Vec<EngineSpec> {
-    let row = |name: &str, summary, kind| EngineSpec { name: name.to_owned(), summary, kind };
+    let row = |name: &str, summary, kind| EngineSpec {
+        name: name.to_owned(),
+        summary,
+        kind,
+    };
     vec![
-        row("lecture", "the slides' impulse solver, bit for bit", EngineKind::Impulse),
+        row(
+            "lecture",
+            "the slides' impulse solver, bit for bit",
+            EngineKind::Impulse,
+        ),
         row(
             "rapier",
             "rapier3d (f32) as its manual would have it, stock parameters",
@@ -128,5 +197,8 @@ pub fn engine(name: &str) -> Result<EngineSpec> {
     known
         .into_iter()
         .find(|spec| spec.name == name)
-        .ok_or_else(|| Error::UnknownEngine { name: name.to_owned(), known: names.join(", ") })
+        .ok_or_else(|| Error::UnknownEngine {
+            name: name.to_owned(),
+            known: names.join(", "),
+        })
 }

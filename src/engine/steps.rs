@@ -42,7 +42,11 @@ impl StepGrid {
                 "makes {steps:.3e} steps, more than {STEPS_MAX:.0e}; take a larger step or a shorter scene"
             )));
         }
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked"
+        )]
         let count = steps_per_sample as u64;
         Ok(Self {
             sample_every: scene.sample_every,
@@ -55,7 +59,10 @@ impl StepGrid {
     ///
     /// The last step ends on the sample's own time, without accumulated rounding.
     #[must_use]
-    #[allow(clippy::cast_precision_loss, reason = "step counts stay far below 2^53")]
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "step counts stay far below 2^53"
+    )]
     #[inline]
     pub fn time(&self, sample: usize, step_in_interval: u64) -> f64 {
         if step_in_interval == self.steps_per_sample {

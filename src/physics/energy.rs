@@ -55,7 +55,11 @@ mod tests {
             let slope = (energy(d + h) - energy(d - h)) / (2.0 * h);
             let other = Vector3::new(d, 0.0, 0.0);
             let force = attraction(5.5, softening, [2.0, 3.0], &Vector3::zeros(), &other);
-            assert!((force.x - slope).abs() < 1e-8, "{} against {slope}", force.x);
+            assert!(
+                (force.x - slope).abs() < 1e-8,
+                "{} against {slope}",
+                force.x
+            );
         }
     }
 }

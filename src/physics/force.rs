@@ -81,9 +81,15 @@ mod tests {
     #[test]
     fn coincident_centres_pull_nowhere() {
         let here = Vector3::new(1.0, 2.0, 3.0);
-        assert_eq!(attraction(5.5, 0.0, [2.0, 3.0], &here, &here), Vector3::zeros());
+        assert_eq!(
+            attraction(5.5, 0.0, [2.0, 3.0], &here, &here),
+            Vector3::zeros()
+        );
         let still = Vector3::zeros();
-        assert_eq!(spring_damper(9.0, 1.0, 0.5, [&here, &here], [&still, &still]), still);
+        assert_eq!(
+            spring_damper(9.0, 1.0, 0.5, [&here, &here], [&still, &still]),
+            still
+        );
     }
 
     #[test]

@@ -19,8 +19,14 @@ pub enum Wall {
 
 impl Wall {
     /// Every wall, in the model's order.
-    pub const ALL: [Self; 6] =
-        [Self::MinusX, Self::PlusX, Self::MinusZ, Self::PlusZ, Self::MinusY, Self::PlusY];
+    pub const ALL: [Self; 6] = [
+        Self::MinusX,
+        Self::PlusX,
+        Self::MinusZ,
+        Self::PlusZ,
+        Self::MinusY,
+        Self::PlusY,
+    ];
 
     /// The name in files.
     #[must_use]
@@ -165,7 +171,11 @@ impl EventLog {
     /// Adds impulse to the latest event of that kind: an impact that an engine spreads over
     /// several steps.
     pub fn prolong(&mut self, kind: EventKind, impulse: f64) {
-        let latest = self.events.iter_mut().rev().find(|event| event.kind == kind);
+        let latest = self
+            .events
+            .iter_mut()
+            .rev()
+            .find(|event| event.kind == kind);
         if let Some(event) = latest {
             event.impulse += impulse;
         }
@@ -178,7 +188,8 @@ impl EventLog {
 
     /// Forgets every event after that time, those with it.
     pub fn truncate_after(&mut self, time: f64) {
-        self.events.retain(|event| event.time <= time && event.impulse.is_finite());
+        self.events
+            .retain(|event| event.time <= time && event.impulse.is_finite());
     }
 
     /// The events kept, in order of time.
@@ -226,10 +237,18 @@ mod tests {
         let mut log = EventLog::default();
         let kind = EventKind::Contact { a: 0, b: 1 };
         for step in 0..10_000 {
-            log.push(Event { time: f64::from(step), kind, impulse: 0.5 });
+            log.push(Event {
+                time: f64::from(step),
+                kind,
+                impulse: 0.5,
+            });
         }
         log.end_interval();
-        log.push(Event { time: 10_000.0, kind, impulse: 0.5 });
+        log.push(Event {
+            time: 10_000.0,
+            kind,
+            impulse: 0.5,
+        });
         assert_eq!(log.events().len(), 33);
         assert_eq!(log.counts().contacts, 10_001);
         assert_eq!(log.merged(), 10_000 - 32);

@@ -37,23 +37,43 @@ pub fn write_events(
 /// # Errors
 /// [`Error::Table`] with the line, for a wrong header, number, kind or name.
 pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventLog> {
-    let complaint =
-        |line: u64, message: String| Error::Table { file: file.to_owned(), line, message };
+    let complaint = |line: u64, message: String| Error::Table {
+        file: file.to_owned(),
+        line,
+        message,
+    };
     let unreadable = |wrong: csv::Error| {
-        complaint(wrong.position().map_or(1, csv::Position::line), wrong.to_string())
+        complaint(
+            wrong.position().map_or(1, csv::Position::line),
+            wrong.to_string(),
+        )
     };
     let mut table = csv::Reader::from_reader(input);
     if table.headers().map_err(unreadable)? != HEADER.as_slice() {
-        return Err(complaint(1, format!("the header must be `{}`", HEADER.join(","))));
+        return Err(complaint(
+            1,
+            format!("the header must be `{}`", HEADER.join(",")),
+        ));
     }
     let mut events = Vec::new();
     for row in table.into_records() {
         let row = row.map_err(unreadable)?;
         let line = row.position().map_or(0, csv::Position::line);
         let number = |column: usize| {
-            row[column].trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| {
-                complaint(line, format!("`{}` is `{}`: not a finite number", HEADER[column], &row[column]))
-            })
+            row[column]
+                .trim()
+                .parse()
+                .ok()
+                .filter(|x: &f64| x.is_finite())
+                .ok_or_else(|| {
+                    complaint(
+                        line,
+                        format!(
+                            "`{}` is `{}`: not a finite number",
+                            HEADER[column], &row[column]
+                        ),
+                    )
+                })
         };
         let body = |column: usize| {
             scene.body_index(&row[column]).ok_or_else(|| {
@@ -63,13 +83,19 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
         let kind = match &row[1] {
             "contact" => {
                 let (a, b) = (body(2)?, body(3)?);
-                EventKind::Contact { a: a.min(b), b: a.max(b) }
+                EventKind::Contact {
+                    a: a.min(b),
+                    b: a.max(b),
+                }
             }
             "cushion" => {
                 let wall = Wall::from_name(&row[3]).ok_or_else(|| {
                     complaint(line, format!("`{}` is no wall: -x +x -z +z -y +y", &row[3]))
                 })?;
-                EventKind::Cushion { body: body(2)?, wall }
+                EventKind::Cushion {
+                    body: body(2)?,
+                    wall,
+                }
             }
             "rest" => EventKind::Rest { body: body(2)? },
             other => {
@@ -77,7 +103,11 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
                 return Err(complaint(line, message));
             }
         };
-        events.push(Event { time: number(0)?, kind, impulse: number(4)? });
+        events.push(Event {
+            time: number(0)?,
+            kind,
+            impulse: number(4)?,
+        });
     }
     Ok(events.into_iter().collect())
 }

@@ -29,6 +29,12 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Whether the whole duration was simulated.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        *self == Self::Finished
+    }
+
     /// One bare word, for tables.
     #[must_use]
     pub fn word(&self) -> &'static str {

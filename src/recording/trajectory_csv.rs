@@ -45,14 +45,23 @@ pub fn read_trajectory(
     input: impl Read,
     file: &str,
 ) -> Result<Recording> {
-    let complaint =
-        |line: u64, message: String| Error::Table { file: file.to_owned(), line, message };
+    let complaint = |line: u64, message: String| Error::Table {
+        file: file.to_owned(),
+        line,
+        message,
+    };
     let unreadable = |wrong: csv::Error| {
-        complaint(wrong.position().map_or(1, csv::Position::line), wrong.to_string())
+        complaint(
+            wrong.position().map_or(1, csv::Position::line),
+            wrong.to_string(),
+        )
     };
     let mut table = csv::Reader::from_reader(input);
     if table.headers().map_err(unreadable)? != HEADER.as_slice() {
-        return Err(complaint(1, format!("the header must be `{}`", HEADER.join(","))));
+        return Err(complaint(
+            1,
+            format!("the header must be `{}`", HEADER.join(",")),
+        ));
     }
     let mut recording = Recording::empty(voice, scene.bodies.len());
     let mut states = Vec::with_capacity(scene.bodies.len());
@@ -69,14 +78,27 @@ pub fn read_trajectory(
             return Err(complaint(line, message));
         }
         let mut numbers = [0.0; 8];
-        for (column, number) in numbers.iter_mut().enumerate().filter(|(column, _)| *column != 1) {
+        for (column, number) in numbers
+            .iter_mut()
+            .enumerate()
+            .filter(|(column, _)| *column != 1)
+        {
             let text = &row[column];
-            *number = text.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| {
-                complaint(line, format!("`{}` is `{text}`: not a finite number", HEADER[column]))
-            })?;
+            *number = text
+                .trim()
+                .parse()
+                .ok()
+                .filter(|x: &f64| x.is_finite())
+                .ok_or_else(|| {
+                    complaint(
+                        line,
+                        format!("`{}` is `{text}`: not a finite number", HEADER[column]),
+                    )
+                })?;
         }
         let [time, _, x, y, z, vx, vy, vz] = numbers;
-        if (time - expected).abs() > TIME_TOLERANCE * scene.duration || sample > scene.sample_count()
+        if (time - expected).abs() > TIME_TOLERANCE * scene.duration
+            || sample > scene.sample_count()
         {
             let message = format!("time {time} s where {expected} s is due: off the scene's grid");
             return Err(complaint(line, message));

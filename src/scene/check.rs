@@ -89,7 +89,12 @@ pub enum SceneWarning {
 impl fmt::Display for SceneWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OverlapAtStart { body_a, body_b, depth, pairs } => write!(
+            Self::OverlapAtStart {
+                body_a,
+                body_b,
+                depth,
+                pairs,
+            } => write!(
                 f,
                 "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e}: \
                  engines push them apart, each in its own way; move them apart for a comparison of motion"
@@ -115,7 +120,11 @@ impl Scene {
         positive(&root().key("sample_every"), self.sample_every)?;
         self.check_grid()?;
         if self.bodies.is_empty() {
-            return Err(fault(root().key("bodies"), "empty", "add at least one [[bodies]] table"));
+            return Err(fault(
+                root().key("bodies"),
+                "empty",
+                "add at least one [[bodies]] table",
+            ));
         }
         let mut names = HashMap::new();
         for (index, body) in self.bodies.iter().enumerate() {
@@ -141,8 +150,10 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with the first fault.
     pub fn checked(&self) -> Result<()> {
-        self.check()
-            .map_err(|fault| Error::Scene { scene: self.name.clone(), message: fault.to_string() })
+        self.check().map_err(|fault| Error::Scene {
+            scene: self.name.clone(),
+            message: fault.to_string(),
+        })
     }
 
     fn check_grid(&self) -> std::result::Result<(), Fault> {
@@ -188,13 +199,16 @@ impl Scene {
             let outside = self.bodies.iter().find(|body| {
                 (0..3).any(|axis| body.position[axis].abs() + body.radius > half[axis])
             });
-            warnings.extend(
-                outside.map(|body| SceneWarning::OutsideAtStart { body: body.name.clone() }),
-            );
+            warnings.extend(outside.map(|body| SceneWarning::OutsideAtStart {
+                body: body.name.clone(),
+            }));
         }
         if self.effects.contact.is_some() {
-            let spheres: Vec<_> =
-                self.bodies.iter().map(|body| (body.position.into(), body.radius)).collect();
+            let spheres: Vec<_> = self
+                .bodies
+                .iter()
+                .map(|body| (body.position.into(), body.radius))
+                .collect();
             let overlaps = overlaps(&spheres);
             let deepest = overlaps.iter().max_by(|a, b| a.depth.total_cmp(&b.depth));
             warnings.extend(deepest.map(|deepest| SceneWarning::OverlapAtStart {
@@ -233,7 +247,10 @@ impl Effects {
             not_negative(&effect("attraction").key("softening"), attraction.softening)?;
         }
         if let Some(gravity) = &self.gravity {
-            finite_vector(&effect("gravity").key("acceleration"), &gravity.acceleration)?;
+            finite_vector(
+                &effect("gravity").key("acceleration"),
+                &gravity.acceleration,
+            )?;
         }
         for (index, spring) in self.springs.iter().enumerate() {
             check_spring(&effect("springs").index(index), spring, names)?;
@@ -299,14 +316,22 @@ fn printable(text: &str) -> String {
 }
 
 fn fault(path: FieldPath, found: impl Into<String>, remedy: impl Into<String>) -> Fault {
-    Fault { path, found: found.into(), remedy: remedy.into() }
+    Fault {
+        path,
+        found: found.into(),
+        remedy: remedy.into(),
+    }
 }
 
 fn finite(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
     if value.is_finite() {
         return Ok(());
     }
-    Err(fault(path.clone(), value.to_string(), "give a finite number"))
+    Err(fault(
+        path.clone(),
+        value.to_string(),
+        "give a finite number",
+    ))
 }
 
 fn positive(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
@@ -314,7 +339,11 @@ fn positive(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
     if value > 0.0 {
         return Ok(());
     }
-    Err(fault(path.clone(), value.to_string(), "give a number above 0"))
+    Err(fault(
+        path.clone(),
+        value.to_string(),
+        "give a number above 0",
+    ))
 }
 
 fn not_negative(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
@@ -322,7 +351,11 @@ fn not_negative(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> 
     if value >= 0.0 {
         return Ok(());
     }
-    Err(fault(path.clone(), value.to_string(), "give 0 or a number above it"))
+    Err(fault(
+        path.clone(),
+        value.to_string(),
+        "give 0 or a number above it",
+    ))
 }
 
 fn fraction(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
@@ -330,7 +363,11 @@ fn fraction(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
     if (0.0..=1.0).contains(&value) {
         return Ok(());
     }
-    Err(fault(path.clone(), value.to_string(), "give a number from 0 to 1"))
+    Err(fault(
+        path.clone(),
+        value.to_string(),
+        "give a number from 0 to 1",
+    ))
 }
 
 fn finite_vector(path: &FieldPath, vector: &[f64; 3]) -> std::result::Result<(), Fault> {

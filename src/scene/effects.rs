@@ -118,7 +118,10 @@ pub struct Spring {
     pub damping: f64,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature serde asks for")]
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "the signature serde asks for"
+)]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
@@ -127,8 +130,11 @@ impl Effects {
     /// Whether the model keeps the total energy: nothing dissipates and nothing drives.
     #[must_use]
     pub fn conserve_energy(&self) -> bool {
-        self.contact.is_none_or(|contact| contact.restitution == 1.0)
-            && self.cushions.is_none_or(|cushions| cushions.restitution == 1.0)
+        self.contact
+            .is_none_or(|contact| contact.restitution == 1.0)
+            && self
+                .cushions
+                .is_none_or(|cushions| cushions.restitution == 1.0)
             && self.drag.is_none_or(|drag| drag.coefficient == 0.0)
             && self.rest.is_none_or(|rest| rest.speed == 0.0)
             && self.springs.iter().all(|spring| spring.damping == 0.0)
@@ -140,6 +146,8 @@ impl Effects {
         self.cushions.is_none()
             && self.drag.is_none_or(|drag| drag.coefficient == 0.0)
             && self.rest.is_none_or(|rest| rest.speed == 0.0)
-            && self.gravity.is_none_or(|gravity| gravity.acceleration == [0.0; 3])
+            && self
+                .gravity
+                .is_none_or(|gravity| gravity.acceleration == [0.0; 3])
     }
 }

@@ -29,13 +29,20 @@ pub fn read(path: &Path) -> Result<Scene> {
 pub fn parse(text: &str, file: &str) -> Result<Scene> {
     let complaint = |byte: usize, message: String| {
         let (line, column) = line_and_column(text, byte);
-        Error::SceneFile { file: file.to_owned(), line, column, message }
+        Error::SceneFile {
+            file: file.to_owned(),
+            line,
+            column,
+            message,
+        }
     };
     let scene: Scene = toml::from_str(text).map_err(|wrong| {
         let byte = wrong.span().map_or(0, |span| span.start);
         complaint(byte, one_line(wrong.message()))
     })?;
-    scene.check().map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
+    scene
+        .check()
+        .map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
     Ok(scene)
 }
 
@@ -45,12 +52,17 @@ pub fn parse(text: &str, file: &str) -> Result<Scene> {
 /// [`Error::Scene`] if the scene is not one, [`Error::SceneWrite`] if TOML cannot hold it.
 pub fn to_toml(scene: &Scene) -> Result<String> {
     scene.checked()?;
-    toml::to_string(scene).map_err(|source| Error::SceneWrite { scene: scene.name.clone(), source })
+    toml::to_string(scene).map_err(|source| Error::SceneWrite {
+        scene: scene.name.clone(),
+        source,
+    })
 }
 
 /// Byte offset of a field, or of the innermost table round it that the text has.
 fn locate(text: &str, path: &FieldPath) -> usize {
-    let Ok(root) = DeTable::parse(text) else { return 0 };
+    let Ok(root) = DeTable::parse(text) else {
+        return 0;
+    };
     let mut start = root.span().start;
     let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
     let mut value = &root;
@@ -86,7 +98,9 @@ mod tests {
     const HEAD: &str = "name = \"x\"\nduration = 1\nsample_every = 0.5\n";
 
     fn complaint(text: &str) -> String {
-        parse(text, "x.toml").expect_err("the scene is wrong").to_string()
+        parse(text, "x.toml")
+            .expect_err("the scene is wrong")
+            .to_string()
     }
 
     #[test]
@@ -94,14 +108,20 @@ mod tests {
         let text = format!(
             "{HEAD}[[bodies]]\nname = \"a\"\nmass = -2\nradius = 1\nposition = [0,0,0]\nvelocity = [0,0,0]\n"
         );
-        assert_eq!(complaint(&text), "x.toml:6:8: `bodies[0].mass` is -2: give a number above 0");
+        assert_eq!(
+            complaint(&text),
+            "x.toml:6:8: `bodies[0].mass` is -2: give a number above 0"
+        );
     }
 
     #[test]
     fn an_unknown_key_names_the_known_ones() {
         let text = format!("{HEAD}colour = 3\n");
         let said = complaint(&text);
-        assert!(said.starts_with("x.toml:4:1: unknown field `colour`"), "{said}");
+        assert!(
+            said.starts_with("x.toml:4:1: unknown field `colour`"),
+            "{said}"
+        );
         assert!(said.contains("`sample_every`"), "{said}");
     }
 
@@ -115,6 +135,9 @@ mod tests {
 
     #[test]
     fn columns_count_characters() {
-        assert_eq!(line_and_column("공 = 1\n당구 = x", "공 = 1\n당구 = ".len()), (2, 6));
+        assert_eq!(
+            line_and_column("공 = 1\n당구 = x", "공 = 1\n당구 = ".len()),
+            (2, 6)
+        );
     }
 }

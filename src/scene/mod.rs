@@ -66,7 +66,11 @@ pub struct Body {
 impl Scene {
     /// How many samples follow the one at time 0.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "check() bounds it")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "check() bounds it"
+    )]
     pub fn sample_count(&self) -> usize {
         (self.duration / self.sample_every).round() as usize
     }
@@ -74,7 +78,10 @@ impl Scene {
     /// Time of a sample, s: `sample * sample_every`, without accumulated rounding.
     #[must_use]
     pub fn sample_time(&self, sample: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "check() keeps samples far below 2^53")]
+        #[allow(
+            clippy::cast_precision_loss,
+            reason = "check() keeps samples far below 2^53"
+        )]
         let count = sample as f64;
         count * self.sample_every
     }
@@ -94,10 +101,17 @@ impl Scene {
     /// The ends of each spring as body indices. Valid for a checked scene.
     #[must_use]
     pub fn spring_ends(&self) -> Vec<[usize; 2]> {
-        let index: std::collections::HashMap<&str, usize> =
-            self.bodies.iter().enumerate().map(|(i, body)| (body.name.as_str(), i)).collect();
+        let index: std::collections::HashMap<&str, usize> = self
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(i, body)| (body.name.as_str(), i))
+            .collect();
         let ends = |spring: &Spring| {
-            Some([*index.get(spring.between[0].as_str())?, *index.get(spring.between[1].as_str())?])
+            Some([
+                *index.get(spring.between[0].as_str())?,
+                *index.get(spring.between[1].as_str())?,
+            ])
         };
         self.effects.springs.iter().filter_map(ends).collect()
     }

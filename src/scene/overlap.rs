@@ -27,7 +27,11 @@ pub fn for_each_overlap(spheres: &[(Vector3<f64>, f64)], mut visit: impl FnMut(O
         for &j in order[place + 1..].iter().take_while(|&&j| low(j) < high) {
             let depth = spheres[i].1 + spheres[j].1 - (spheres[i].0 - spheres[j].0).norm();
             if depth > 0.0 {
-                visit(Overlap { a: i.min(j), b: i.max(j), depth });
+                visit(Overlap {
+                    a: i.min(j),
+                    b: i.max(j),
+                    depth,
+                });
             }
         }
     }
@@ -43,10 +47,14 @@ pub fn overlaps(spheres: &[(Vector3<f64>, f64)]) -> Vec<Overlap> {
 
 fn widest_axis(spheres: &[(Vector3<f64>, f64)]) -> usize {
     let spread = |axis: usize| {
-        let (low, high) = spheres.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
-            (low.min(s.0[axis]), high.max(s.0[axis]))
-        });
+        let (low, high) = spheres
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
+                (low.min(s.0[axis]), high.max(s.0[axis]))
+            });
         high - low
     };
-    (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0)
+    (0..3)
+        .max_by(|&a, &b| spread(a).total_cmp(&spread(b)))
+        .unwrap_or(0)
 }

@@ -1,4 +1,14 @@
 //! All integration tests, in one binary.
-#![allow(missing_docs, clippy::float_cmp)]
+#![allow(missing_docs, clippy::float_cmp, clippy::pedantic)]
 
+mod bad_input;
+mod cases;
+mod closed_forms;
+mod command_line;
+mod controls;
+mod hostile;
+mod invariants;
+mod layers;
 mod oracle;
+mod plain_loop;
+mod scenes;

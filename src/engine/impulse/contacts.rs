@@ -18,7 +18,13 @@ pub(super) fn collide(particles: &mut [Particle], effect: Contact, observer: &mu
             if distance < a.radius + b.radius {
                 let impulse = separate(a, b, &apart, distance, effect.restitution);
                 if let Some(impulse) = impulse {
-                    observer.note(EventKind::Contact { a: i, b: i + 1 + offset }, impulse);
+                    observer.note(
+                        EventKind::Contact {
+                            a: i,
+                            b: i + 1 + offset,
+                        },
+                        impulse,
+                    );
                 }
             }
         }
@@ -38,8 +44,11 @@ fn separate(
     restitution: f64,
 ) -> Option<f64> {
     let penetration = a.radius + b.radius - distance;
-    let normal =
-        if distance > 0.0 { apart / distance } else { coincident_normal(&a.velocity, &b.velocity) };
+    let normal = if distance > 0.0 {
+        apart / distance
+    } else {
+        coincident_normal(&a.velocity, &b.velocity)
+    };
     let (v1n, v2n) = (a.velocity.dot(&normal), b.velocity.dot(&normal));
     let approach_velocity = v1n - v2n;
     let mut impulse = None;
@@ -63,7 +72,11 @@ fn separate(
 fn coincident_normal(velocity_a: &Vector3, velocity_b: &Vector3) -> Vector3 {
     let relative = velocity_b - velocity_a;
     let speed = length(&relative);
-    if speed > 0.0 && speed.is_finite() { relative / speed } else { Vector3::x() }
+    if speed > 0.0 && speed.is_finite() {
+        relative / speed
+    } else {
+        Vector3::x()
+    }
 }
 
 #[cfg(test)]
@@ -72,7 +85,13 @@ mod tests {
     use crate::engine::impulse::observer::Nobody;
 
     fn particle(position: Vector3, velocity: Vector3) -> Particle {
-        Particle { position, velocity, force: Vector3::zeros(), mass: 2.0, radius: 1.0 }
+        Particle {
+            position,
+            velocity,
+            force: Vector3::zeros(),
+            mass: 2.0,
+            radius: 1.0,
+        }
     }
 
     #[test]
@@ -84,18 +103,31 @@ mod tests {
         collide(&mut pair, Contact { restitution: 1.0 }, &mut Nobody);
         assert_eq!(pair[0].velocity, Vector3::zeros());
         assert_eq!(pair[1].velocity, Vector3::new(-1.0, 0.0, 0.0));
-        assert!(pair[0].position.x > 1.9 && pair[1].position.x < 0.0, "pushed apart, not together");
+        assert!(
+            pair[0].position.x > 1.9 && pair[1].position.x < 0.0,
+            "pushed apart, not together"
+        );
     }
 
     #[test]
     fn coincident_centres_used_to_be_nan_and_now_part() {
         let still = Vector3::zeros();
-        let mut pair = [particle(still, still), particle(still, Vector3::new(0.0, 3.0, 0.0))];
+        let mut pair = [
+            particle(still, still),
+            particle(still, Vector3::new(0.0, 3.0, 0.0)),
+        ];
         collide(&mut pair, Contact { restitution: 0.5 }, &mut Nobody);
         let apart = pair[0].position - pair[1].position;
-        assert_eq!(apart, Vector3::new(0.0, 3.0, 0.0), "(1 + e) times the overlap of 2, along y");
+        assert_eq!(
+            apart,
+            Vector3::new(0.0, 3.0, 0.0),
+            "(1 + e) times the overlap of 2, along y"
+        );
         let mut resting = [particle(still, still), particle(still, still)];
         collide(&mut resting, Contact { restitution: 0.5 }, &mut Nobody);
-        assert_eq!(resting[0].position - resting[1].position, Vector3::new(3.0, 0.0, 0.0));
+        assert_eq!(
+            resting[0].position - resting[1].position,
+            Vector3::new(3.0, 0.0, 0.0)
+        );
     }
 }

@@ -7,8 +7,14 @@ use crate::recording::{EventKind, Wall};
 use crate::scene::Cushions;
 
 /// The walls in the slides' order, +x -x +z -z, then +y -y which the slides do not have.
-const ORDER: [Wall; 6] =
-    [Wall::PlusX, Wall::MinusX, Wall::PlusZ, Wall::MinusZ, Wall::PlusY, Wall::MinusY];
+const ORDER: [Wall; 6] = [
+    Wall::PlusX,
+    Wall::MinusX,
+    Wall::PlusZ,
+    Wall::MinusZ,
+    Wall::PlusY,
+    Wall::MinusY,
+];
 
 /// Slides' `cushion()`: an else-if chain, so one wall a ball and step.
 ///
@@ -20,13 +26,24 @@ const ORDER: [Wall; 6] =
 #[inline]
 pub(super) fn bounce(particles: &mut [Particle], effect: &Cushions, observer: &mut impl Observer) {
     let walls = if effect.half_height.is_some() { 6 } else { 4 };
-    let half = [effect.half_width, effect.half_height.unwrap_or(f64::INFINITY), effect.half_length];
+    let half = [
+        effect.half_width,
+        effect.half_height.unwrap_or(f64::INFINITY),
+        effect.half_length,
+    ];
     for (body, particle) in particles.iter_mut().enumerate() {
         for wall in &ORDER[..walls] {
             let (axis, side) = wall.axis_and_side();
-            if bounce_off(particle, axis, side, half[axis], effect.restitution, |impulse| {
-                observer.note(EventKind::Cushion { body, wall: *wall }, impulse);
-            }) {
+            if bounce_off(
+                particle,
+                axis,
+                side,
+                half[axis],
+                effect.restitution,
+                |impulse| {
+                    observer.note(EventKind::Cushion { body, wall: *wall }, impulse);
+                },
+            ) {
                 break;
             }
         }

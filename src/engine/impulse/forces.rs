@@ -31,8 +31,13 @@ pub(super) fn attract(particles: &mut [Particle], effect: Attraction) {
         let a = &mut head[i];
         for b in tail {
             let masses = [a.mass, b.mass];
-            let force =
-                attraction(effect.constant, effect.softening, masses, &a.position, &b.position);
+            let force = attraction(
+                effect.constant,
+                effect.softening,
+                masses,
+                &a.position,
+                &b.position,
+            );
             a.force += force;
             b.force += -force;
         }

@@ -26,6 +26,10 @@ pub(super) struct Scribe<'a> {
 
 impl Observer for Scribe<'_> {
     fn note(&mut self, kind: EventKind, impulse: f64) {
-        self.log.push(Event { time: self.time, kind, impulse });
+        self.log.push(Event {
+            time: self.time,
+            kind,
+            impulse,
+        });
     }
 }

@@ -99,13 +99,20 @@ impl ImpulseSimulation {
     #[must_use]
     pub fn new(scene: &Scene, grid: StepGrid) -> Self {
         let phases = Phases::of(scene);
-        Self { particles: particles(scene), phases, grid, sample: 0, steps: 0 }
+        Self {
+            particles: particles(scene),
+            phases,
+            grid,
+            sample: 0,
+            steps: 0,
+        }
     }
 
     /// Takes that many steps unobserved, for a stopwatch that looks at the step alone.
     pub fn take_steps(&mut self, count: u64) {
         for _ in 0..count {
-            self.phases.step(&mut self.particles, self.grid.step, &mut Nobody);
+            self.phases
+                .step(&mut self.particles, self.grid.step, &mut Nobody);
         }
         self.steps += count;
     }
@@ -113,29 +120,47 @@ impl ImpulseSimulation {
     /// The phases of a step, in order.
     #[must_use]
     pub fn phases(&self) -> Vec<Phase> {
-        let Phases { attraction, drag, springs, gravity, rest, cushions, contact, forces } =
-            &self.phases;
+        let Phases {
+            attraction,
+            drag,
+            springs,
+            gravity,
+            rest,
+            cushions,
+            contact,
+            forces,
+        } = &self.phases;
         let clear = forces.then(|| Phase::new("clear", "forces to zero"));
         let kick = forces.then(|| Phase::new("kick", "v += dt F/m"));
         let attraction = attraction.map(|_| Phase::new("attraction", "every pair i < j"));
         let drag = drag.map(|_| Phase::new("drag", "force -k v, explicit"));
-        let springs = (!springs.is_empty())
-            .then(|| Phase::new("springs", format!("{} spring-dampers, explicit", springs.len())));
+        let springs = (!springs.is_empty()).then(|| {
+            Phase::new(
+                "springs",
+                format!("{} spring-dampers, explicit", springs.len()),
+            )
+        });
         let gravity = gravity.map(|_| Phase::new("gravity", "force m g"));
         let drift = Some(Phase::new("drift", "x += dt v (symplectic Euler)"));
         let rest = rest.map(|_| Phase::new("rest", "slower than the rest speed: stop"));
         let cushions = cushions.map(|cushions| {
             let walls = if cushions.half_height.is_some() { 6 } else { 4 };
-            let method = format!("{walls} walls, one a ball and step: mirror, push (1+e) x overlap");
+            let method =
+                format!("{walls} walls, one a ball and step: mirror, push (1+e) x overlap");
             Phase::new("cushions", method)
         });
         let contacts = contact.map(|_| {
-            Phase::new("contacts", "every pair i < j: impulse if approaching, push (1+e)/2 x overlap each")
+            Phase::new(
+                "contacts",
+                "every pair i < j: impulse if approaching, push (1+e)/2 x overlap each",
+            )
         });
-        [clear, attraction, drag, springs, gravity, kick, drift, rest, cushions, contacts]
-            .into_iter()
-            .flatten()
-            .collect()
+        [
+            clear, attraction, drag, springs, gravity, kick, drift, rest, cushions, contacts,
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 }
 
@@ -150,8 +175,12 @@ impl Simulation for ImpulseSimulation {
         while self.sample < sample {
             self.sample += 1;
             for step in 1..=self.grid.steps_per_sample {
-                let mut scribe = Scribe { log, time: self.grid.time(self.sample, step) };
-                self.phases.step(&mut self.particles, self.grid.step, &mut scribe);
+                let mut scribe = Scribe {
+                    log,
+                    time: self.grid.time(self.sample, step),
+                };
+                self.phases
+                    .step(&mut self.particles, self.grid.step, &mut scribe);
             }
             self.steps += self.grid.steps_per_sample;
         }
@@ -160,7 +189,10 @@ impl Simulation for ImpulseSimulation {
 
     fn state_into(&self, into: &mut [BodyState]) {
         for (state, particle) in into.iter_mut().zip(&self.particles) {
-            *state = BodyState { position: particle.position, velocity: particle.velocity };
+            *state = BodyState {
+                position: particle.position,
+                velocity: particle.velocity,
+            };
         }
     }
 

@@ -28,7 +28,14 @@ pub struct Cluster {
 
 impl Default for Cluster {
     fn default() -> Self {
-        Self { count: 30, seed: 1, extent: 30.0, mass: [10.0, 90.0], density: 2.0, speed: 2.0 }
+        Self {
+            count: 30,
+            seed: 1,
+            extent: 30.0,
+            mass: [10.0, 90.0],
+            density: 2.0,
+            speed: 2.0,
+        }
     }
 }
 
@@ -50,7 +57,13 @@ impl Cluster {
             let position = self.place(&mut random, &placed, radius)?;
             placed.push((position.into(), radius));
             let velocity = random.in_ball(self.speed);
-            bodies.push(Body { name: format!("ball{number}"), mass, radius, position, velocity });
+            bodies.push(Body {
+                name: format!("ball{number}"),
+                mass,
+                radius,
+                position,
+                velocity,
+            });
         }
         let scene = Scene {
             name: format!("cluster-{}-seed-{}", self.count, self.seed),
@@ -62,11 +75,16 @@ impl Cluster {
             watch: None,
             duration: 3.0,
             sample_every: 0.0625,
-            units: Units { length: LengthUnit::Metre },
+            units: Units {
+                length: LengthUnit::Metre,
+            },
             bodies,
             effects: Effects {
                 contact: Some(Contact { restitution: 0.1 }),
-                attraction: Some(Attraction { constant: 5.5, softening: 0.0 }),
+                attraction: Some(Attraction {
+                    constant: 5.5,
+                    softening: 0.0,
+                }),
                 ..Effects::default()
             },
         };
@@ -82,12 +100,20 @@ impl Cluster {
     ) -> Result<[f64; 3]> {
         let free = |position: &[f64; 3]| {
             let centre = Vector3::from(*position);
-            placed.iter().all(|(other, r)| (centre - other).norm() > radius + r)
+            placed
+                .iter()
+                .all(|(other, r)| (centre - other).norm() > radius + r)
         };
-        (0..TRIES).map(|_| random.in_ball(self.extent)).find(free).ok_or_else(|| Error::Argument {
-            argument: "extent",
-            found: self.extent.to_string(),
-            remedy: format!("sphere {} finds no free place; make the extent larger", placed.len()),
-        })
+        (0..TRIES)
+            .map(|_| random.in_ball(self.extent))
+            .find(free)
+            .ok_or_else(|| Error::Argument {
+                argument: "extent",
+                found: self.extent.to_string(),
+                remedy: format!(
+                    "sphere {} finds no free place; make the extent larger",
+                    placed.len()
+                ),
+            })
     }
 }

@@ -22,15 +22,23 @@ pub struct Gas {
 
 impl Default for Gas {
     fn default() -> Self {
-        Self { cells: 6, filling: 0.49, seed: 1 }
+        Self {
+            cells: 6,
+            filling: 0.49,
+            seed: 1,
+        }
     }
 }
 
 const RADIUS: f64 = 0.5;
 
 /// The four places in a cell, in lattice constants.
-const BASIS: [[f64; 3]; 4] =
-    [[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]];
+const BASIS: [[f64; 3]; 4] = [
+    [0.25, 0.25, 0.25],
+    [0.75, 0.75, 0.25],
+    [0.75, 0.25, 0.75],
+    [0.25, 0.75, 0.75],
+];
 
 impl Gas {
     /// Makes the scene, in natural units: radius 0.5, mass 1, one unit of speed a degree of freedom.
@@ -64,7 +72,9 @@ impl Gas {
             watch: None,
             duration: 1.0,
             sample_every: 0.0625,
-            units: Units { length: LengthUnit::None },
+            units: Units {
+                length: LengthUnit::None,
+            },
             bodies: self.bodies(constant, half),
             effects: Effects {
                 contact: Some(Contact { restitution: 1.0 }),
@@ -85,8 +95,11 @@ impl Gas {
         let mut random = Random::new(self.seed);
         let mut bodies = Vec::new();
         for cell in 0..self.cells.pow(3) {
-            let corner =
-                [cell % self.cells, cell / self.cells % self.cells, cell / self.cells.pow(2)];
+            let corner = [
+                cell % self.cells,
+                cell / self.cells % self.cells,
+                cell / self.cells.pow(2),
+            ];
             for place in BASIS {
                 #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
                 let position =

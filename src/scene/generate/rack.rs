@@ -23,7 +23,13 @@ pub struct Rack {
 
 impl Default for Rack {
     fn default() -> Self {
-        Self { rows: 5, gap: 1.0, jitter: 0.0, seed: 1, speed: 5000.0 }
+        Self {
+            rows: 5,
+            gap: 1.0,
+            jitter: 0.0,
+            seed: 1,
+            speed: 5000.0,
+        }
     }
 }
 
@@ -49,7 +55,11 @@ impl Rack {
             });
         }
         let mut random = Random::new(self.seed);
-        let mut bodies = vec![ball("cue".into(), [0.0, RADIUS, 900.0], [0.0, 0.0, -self.speed])];
+        let mut bodies = vec![ball(
+            "cue".into(),
+            [0.0, RADIUS, 900.0],
+            [0.0, 0.0, -self.speed],
+        )];
         for row in 0..self.rows {
             for place in 0..=row {
                 #[allow(clippy::cast_precision_loss, reason = "a handful of rows")]
@@ -57,7 +67,11 @@ impl Rack {
                 let x = across * pitch + random.between(-self.jitter, self.jitter);
                 let z = -300.0 - down * pitch * 0.75_f64.sqrt()
                     + random.between(-self.jitter, self.jitter);
-                bodies.push(ball(format!("ball{}", bodies.len()), [x, RADIUS, z], [0.0; 3]));
+                bodies.push(ball(
+                    format!("ball{}", bodies.len()),
+                    [x, RADIUS, z],
+                    [0.0; 3],
+                ));
             }
         }
         let scene = Scene {
@@ -67,7 +81,9 @@ impl Rack {
             watch: None,
             duration: 4.0,
             sample_every: 0.0625,
-            units: Units { length: LengthUnit::Millimetre },
+            units: Units {
+                length: LengthUnit::Millimetre,
+            },
             bodies,
             effects: Effects {
                 contact: Some(Contact { restitution: 0.9 }),
@@ -88,5 +104,11 @@ impl Rack {
 }
 
 fn ball(name: String, position: [f64; 3], velocity: [f64; 3]) -> Body {
-    Body { name, mass: MASS, radius: RADIUS, position, velocity }
+    Body {
+        name,
+        mass: MASS,
+        radius: RADIUS,
+        position,
+        velocity,
+    }
 }

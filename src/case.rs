@@ -1,0 +1,204 @@
+//! A case: a scene with what independent evidence there is about it.
+//!
+//! Names resolve in the folder `reference/` (or another one), else among the cases that are
+//! compiled in.
+
+use std::path::{Path, PathBuf};
+
+use include_dir::{Dir, include_dir};
+
+use crate::error::{Error, Result};
+use crate::recording::{Recording, read_events, read_trajectory};
+use crate::scene::{self, Scene};
+
+static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
+
+/// The folder that is looked into when none is named.
+pub const REFERENCE: &str = "reference";
+
+/// A scene, and the truth about it where there is one.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The scene.
+    pub scene: Scene,
+    /// Independent evidence, a recording with the voice `truth`.
+    pub truth: Option<Recording>,
+    /// Where the evidence comes from.
+    pub origin: Option<String>,
+}
+
+/// Where cases come from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Library {
+    /// A folder with a folder a case.
+    Folder(PathBuf),
+    /// The cases compiled in.
+    Embedded,
+}
+
+impl Library {
+    /// The folder asked for; else `reference/` here if there is one; else the embedded cases.
+    #[must_use]
+    pub fn choose(folder: Option<&Path>) -> Self {
+        match folder {
+            Some(folder) => Self::Folder(folder.to_owned()),
+            None if Path::new(REFERENCE).is_dir() => Self::Folder(REFERENCE.into()),
+            None => Self::Embedded,
+        }
+    }
+
+    /// The names of all cases, sorted.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if the folder cannot be listed.
+    pub fn names(&self) -> Result<Vec<String>> {
+        let mut names = match self {
+            Self::Folder(folder) => {
+                let unreadable = |source| Error::read(folder, source);
+                let mut names = Vec::new();
+                for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+                    let entry = entry.map_err(unreadable)?;
+                    if entry.path().join("scene.toml").is_file() {
+                        names.push(entry.file_name().to_string_lossy().into_owned());
+                    }
+                }
+                names
+            }
+            Self::Embedded => EMBEDDED
+                .dirs()
+                .filter(|dir| dir.get_file(dir.path().join("scene.toml")).is_some())
+                .map(|dir| dir.path().display().to_string())
+                .collect(),
+        };
+        names.sort();
+        Ok(names)
+    }
+
+    /// Reads a case with its evidence.
+    ///
+    /// # Errors
+    /// [`Error::UnknownCase`] with the nearest name, or what is wrong with one of its files.
+    pub fn case(&self, name: &str) -> Result<Case> {
+        let Some(scene) = self.file(name, "scene.toml")? else {
+            return Err(self.unknown(name));
+        };
+        let scene = scene::parse(&scene.text()?, &scene.path)?;
+        let mut truth = None;
+        if let Some(table) = self.file(name, "truth.csv")? {
+            let mut recording =
+                read_trajectory("truth", &scene, table.bytes.as_slice(), &table.path)?;
+            if let Some(events) = self.file(name, "events.csv")? {
+                recording.events = read_events(&scene, events.bytes.as_slice(), &events.path)?;
+            }
+            truth = Some(recording);
+        }
+        let origin = self
+            .file(name, "ORIGIN.md")?
+            .map(|file| file.text())
+            .transpose()?;
+        let origin = origin.map(|text| without_heading(&text).to_owned());
+        Ok(Case {
+            scene,
+            truth,
+            origin,
+        })
+    }
+
+    /// The text of a case's scene file, as it stands.
+    ///
+    /// # Errors
+    /// As [`case`](Self::case).
+    pub fn scene_text(&self, name: &str) -> Result<String> {
+        self.file(name, "scene.toml")?
+            .ok_or_else(|| self.unknown(name))?
+            .text()
+    }
+
+    fn file(&self, case: &str, file: &str) -> Result<Option<CaseFile>> {
+        let plain = !case.is_empty() && !case.contains(['/', '\\']) && !case.starts_with('.');
+        if !plain {
+            return Ok(None);
+        }
+        match self {
+            Self::Folder(folder) => {
+                let path = folder.join(case).join(file);
+                match std::fs::read(&path) {
+                    Ok(bytes) => Ok(Some(CaseFile {
+                        path: path.display().to_string(),
+                        bytes,
+                    })),
+                    Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => Ok(None),
+                    Err(wrong) => Err(Error::read(&path, wrong)),
+                }
+            }
+            Self::Embedded => {
+                Ok(EMBEDDED
+                    .get_file(format!("{case}/{file}"))
+                    .map(|found| CaseFile {
+                        path: format!("{case}/{file} (compiled in)"),
+                        bytes: found.contents().to_vec(),
+                    }))
+            }
+        }
+    }
+
+    fn unknown(&self, name: &str) -> Error {
+        let names = self.names().unwrap_or_default();
+        let near: Vec<_> = names
+            .iter()
+            .filter(|known| known.contains(name) || name.contains(known.as_str()))
+            .map(String::as_str)
+            .collect();
+        let hint = if near.is_empty() || name.is_empty() {
+            String::new()
+        } else {
+            format!("; did you mean {}?", near.join(" or "))
+        };
+        Error::UnknownCase {
+            name: name.to_owned(),
+            hint,
+        }
+    }
+}
+
+/// A text without a Markdown heading in its first line.
+fn without_heading(text: &str) -> &str {
+    match text.split_once('\n') {
+        Some((first, rest)) if first.starts_with('#') => rest.trim(),
+        Some(_) | None => text.trim(),
+    }
+}
+
+struct CaseFile {
+    path: String,
+    bytes: Vec<u8>,
+}
+
+impl CaseFile {
+    fn text(&self) -> Result<String> {
+        String::from_utf8(self.bytes.clone()).map_err(|wrong| Error::NotUtf8 {
+            file: self.path.clone(),
+            byte: wrong.utf8_error().valid_up_to(),
+        })
+    }
+}
+
+/// A scene by the path of its file, or a case by its name.
+///
+/// # Errors
+/// Those of reading it, or [`Error::UnknownCase`].
+pub fn scene_or_case(name: &str, library: &Library) -> Result<Case> {
+    let path = Path::new(name);
+    let is_file = path.is_file()
+        || path
+            .extension()
+            .is_some_and(|extension| extension == "toml");
+    if is_file {
+        return Ok(Case {
+            scene: scene::read(path)?,
+            truth: None,
+            origin: None,
+        });
+    }
+    library.case(name)
+}

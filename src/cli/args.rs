@@ -1,0 +1,55 @@
+//! Arguments that several subcommands share.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::case::Library;
+use crate::engine::{DEFAULT_DT, EngineSpec, engine, engines};
+use crate::error::{Error, Result};
+
+/// Which engines, and with which step.
+#[derive(Debug, Args)]
+pub(super) struct EngineArgs {
+    /// Engines, separated by commas; pictures show the first two, and truth
+    #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
+    names: Vec<String>,
+    /// Largest time step, s; the step taken divides the time between samples
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT)]
+    pub dt: f64,
+}
+
+impl EngineArgs {
+    /// The engines asked for, or these of the ones this build has.
+    pub fn specs(&self, default: &[&str]) -> Result<Vec<EngineSpec>> {
+        if self.names.is_empty() {
+            let built = engines().into_iter().filter(EngineSpec::is_built);
+            return Ok(built
+                .filter(|spec| default.contains(&spec.name.as_str()))
+                .collect());
+        }
+        let mut specs: Vec<EngineSpec> = Vec::new();
+        for name in &self.names {
+            let spec = engine(name.trim())?;
+            if specs.contains(&spec) {
+                return Err(Error::EngineTwice { name: spec.name });
+            }
+            specs.push(spec);
+        }
+        Ok(specs)
+    }
+}
+
+/// Where cases come from.
+#[derive(Debug, Args)]
+pub(super) struct LibraryArgs {
+    /// Folder of cases [default: reference/ if there is one, else those compiled in]
+    #[arg(long, value_name = "DIR")]
+    reference: Option<PathBuf>,
+}
+
+impl LibraryArgs {
+    pub fn library(&self) -> Library {
+        Library::choose(self.reference.as_deref())
+    }
+}

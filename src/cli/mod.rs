@@ -1,0 +1,68 @@
+//! The command line: clap types, one file a subcommand.
+
+mod args;
+mod output;
+mod plan;
+mod report;
+mod run;
+mod scenes;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::Result;
+
+/// Runs a lecture's impulse solver and Rapier side by side on the same scenes: how far do they
+/// part, why, and at what price?
+#[derive(Debug, Parser)]
+#[command(name = "carom", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run every case on every engine and write the comparison: tables, pictures, pages
+    Report(report::Args),
+    /// Run one scene on some engines and write what they did
+    Run(run::Args),
+    /// Print what each engine does in a step of a scene, and nothing else does it
+    Plan(plan::Args),
+    /// List, show, start or generate scenes
+    Scenes(scenes::Args),
+}
+
+/// Parses the arguments and does what they say; gives the exit code.
+///
+/// Exit 0: done (a blow-up is a result, with a warning). Exit 2: could not run, with one line.
+#[must_use]
+pub fn main() -> std::process::ExitCode {
+    let cli = Cli::parse();
+    let done = output::tidy_up_on_interrupt().and_then(|()| dispatch(cli.command));
+    match done {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            output::complain(&error);
+            std::process::ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(command: Command) -> Result<()> {
+    match command {
+        Command::Report(args) => report::run(&args),
+        Command::Run(args) => run::run(&args),
+        Command::Plan(args) => plan::run(&args),
+        Command::Scenes(args) => scenes::run(&args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

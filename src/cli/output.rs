@@ -1,0 +1,58 @@
+//! What the terminal sees: results, warnings, progress, and Ctrl-C.
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::error::{Error, Result};
+use crate::report::remove_unfinished;
+
+/// Prints a result. A reader who has seen enough (`| head`) is no error.
+pub(super) fn say(text: impl Display) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(wrong) if wrong.kind() != io::ErrorKind::BrokenPipe => Err(Error::Write {
+            path: "standard output".into(),
+            source: wrong,
+        }),
+        Ok(()) | Err(_) => Ok(()),
+    }
+}
+
+/// Warns on standard error. That nobody listens there is no reason to stop.
+pub(super) fn warn(text: impl Display) {
+    let _ = writeln!(io::stderr().lock(), "warning: {text}");
+}
+
+/// Says why carom could not run.
+pub(super) fn complain(error: &Error) {
+    let _ = writeln!(io::stderr().lock(), "error: {error}");
+}
+
+/// A progress bar on a terminal, silence in a pipe or when asked to be quiet.
+pub(super) fn progress(length: usize, quiet: bool) -> ProgressBar {
+    let bar = ProgressBar::new(length as u64);
+    if quiet {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    if let Ok(style) =
+        ProgressStyle::with_template("{wide_bar} {pos}/{len} cases, {elapsed_precise}, {msg}")
+    {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// On Ctrl-C, leaves complete files only and ends with 130, as shells expect.
+pub(super) fn tidy_up_on_interrupt() -> Result<()> {
+    let tidy_up = || {
+        remove_unfinished();
+        std::process::exit(130);
+    };
+    ctrlc::set_handler(tidy_up).map_err(|wrong| Error::Interrupt {
+        message: wrong.to_string(),
+    })
+}

@@ -1,0 +1,90 @@
+//! `carom report`: every case on every engine.
+
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+
+use super::args::{EngineArgs, LibraryArgs};
+use super::output::{progress, say, warn};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::report::{Folder, Pictured, write_comparison, write_index};
+use crate::study::side_by_side;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Names of cases [default: all]
+    cases: Vec<String>,
+    #[command(flatten)]
+    engines: EngineArgs,
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// Folder for the report
+    #[arg(long, value_name = "DIR", default_value = "reports")]
+    out: PathBuf,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    let specs = args
+        .engines
+        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
+    let dt = args.engines.dt;
+    let library = args.library.library();
+    let names = if args.cases.is_empty() {
+        library.names()?
+    } else {
+        args.cases.clone()
+    };
+    let cases = names
+        .iter()
+        .map(|name| library.case(name))
+        .collect::<Result<Vec<Case>>>()?;
+    if cases.is_empty() {
+        return Err(Error::NoCases);
+    }
+    for (case, spec) in cases
+        .iter()
+        .flat_map(|case| specs.iter().map(move |spec| (case, spec)))
+    {
+        crate::engine::prepare(&case.scene, spec, dt)?;
+    }
+    let folder = Folder::open(&args.out)?;
+    let bar = progress(cases.len(), args.quiet);
+    let summaries = cases
+        .par_iter()
+        .map(|case| {
+            bar.set_message(case.scene.name.clone());
+            let comparison = side_by_side(case, &specs, dt)?;
+            let own = folder.folder(&case.scene.name)?;
+            let summary = write_comparison(&own, &comparison, Pictured { engines: 2 })?;
+            bar.inc(1);
+            Ok(summary)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    bar.finish_and_clear();
+    write_index(&folder, &summaries, &specs, dt)?;
+    for summary in &summaries {
+        for voice in summary
+            .voices
+            .iter()
+            .filter(|voice| !voice.outcome.is_finished())
+        {
+            warn(format_args!(
+                "{}: {}: {}",
+                summary.scene, voice.voice, voice.outcome_text
+            ));
+        }
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    say(format_args!(
+        "{} cases on {} engines: {}",
+        summaries.len(),
+        specs.len(),
+        folder.path().join("README.md").display()
+    ))
+}

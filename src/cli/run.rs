@@ -1,0 +1,72 @@
+//! `carom run`: one scene on some engines.
+
+use std::path::PathBuf;
+
+use super::args::{EngineArgs, LibraryArgs};
+use super::output::{say, warn};
+use crate::case::scene_or_case;
+use crate::error::Result;
+use crate::report::{Folder, Pictured, findings, write_comparison};
+use crate::study::side_by_side;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// A scene file, or the name of a case
+    scene: String,
+    #[command(flatten)]
+    engines: EngineArgs,
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// Folder for the files [default: runs/<scene>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// Print summary.json instead of sentences
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    let specs = args.engines.specs(&["lecture", "rapier"])?;
+    let case = scene_or_case(&args.scene, &args.library.library())?;
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(&case.scene.name));
+    for warning in case.scene.warnings() {
+        warn(warning);
+    }
+    for spec in &specs {
+        crate::engine::prepare(&case.scene, spec, args.engines.dt)?;
+    }
+    let folder = Folder::open(&out)?;
+    let comparison = side_by_side(&case, &specs, args.engines.dt)?;
+    let summary = write_comparison(&folder, &comparison, Pictured { engines: 2 })?;
+    for voice in summary
+        .voices
+        .iter()
+        .filter(|voice| !voice.outcome.is_finished())
+    {
+        warn(format_args!("{}: {}", voice.voice, voice.outcome_text));
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return say(serde_json::to_string_pretty(&summary)?);
+    }
+    let names: Vec<_> = summary
+        .voices
+        .iter()
+        .map(|voice| voice.voice.as_str())
+        .collect();
+    for (who, what) in findings(&summary, &names) {
+        say(format_args!("{who} {what}"))?;
+    }
+    say(format_args!(
+        "Written to {}",
+        folder.path().join("README.md").display()
+    ))
+}

@@ -1,0 +1,247 @@
+//! `carom scenes`: list, show, start, generate.
+
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+
+use super::args::LibraryArgs;
+use super::output::say;
+use crate::error::{Error, Result};
+use crate::report::Folder;
+use crate::scene::generate::{Cluster, Gas, Rack};
+use crate::scene::{Scene, parse, to_toml};
+
+/// A scene to start from: small, complete, every effect mentioned.
+const STARTER: &str = include_str!("../../templates/starter.toml");
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// List the cases
+    List {
+        #[command(flatten)]
+        library: LibraryArgs,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Print the scene file of a case
+    Show {
+        /// Name of the case
+        case: String,
+        #[command(flatten)]
+        library: LibraryArgs,
+    },
+    /// Write a small scene file to start from
+    New {
+        /// Name of the scene, a-z, 0-9 and `-`
+        name: String,
+        #[command(flatten)]
+        out: Out,
+    },
+    /// Generate a scene from a recipe and a seed
+    Generate {
+        #[command(subcommand)]
+        recipe: Recipe,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+struct Out {
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Recipe {
+    /// The lecture's random cluster of attracting spheres
+    Cluster {
+        /// Number of spheres
+        #[arg(long, default_value_t = Cluster::default().count)]
+        count: usize,
+        /// Radius of the ball that holds their centres, m
+        #[arg(long, default_value_t = Cluster::default().extent)]
+        extent: f64,
+        /// Seed of the random numbers
+        #[arg(long, default_value_t = Cluster::default().seed)]
+        seed: u64,
+        #[command(flatten)]
+        out: Out,
+    },
+    /// A rack of balls on the lecture's table, and a cue ball
+    Rack {
+        /// Rows of the triangle
+        #[arg(long, default_value_t = Rack::default().rows)]
+        rows: usize,
+        /// Free distance between neighbours, mm
+        #[arg(long, default_value_t = Rack::default().gap)]
+        gap: f64,
+        /// Each ball is moved by up to this much, mm
+        #[arg(long, default_value_t = Rack::default().jitter)]
+        jitter: f64,
+        /// Seed of the jitter
+        #[arg(long, default_value_t = Rack::default().seed)]
+        seed: u64,
+        #[command(flatten)]
+        out: Out,
+    },
+    /// An elastic gas on a face-centred cubic lattice in a closed box
+    Gas {
+        /// Lattice cells an edge; 4 spheres a cell
+        #[arg(long, default_value_t = Gas::default().cells)]
+        cells: usize,
+        /// Filling fraction
+        #[arg(long, default_value_t = Gas::default().filling)]
+        filling: f64,
+        /// Seed of the velocities
+        #[arg(long, default_value_t = Gas::default().seed)]
+        seed: u64,
+        #[command(flatten)]
+        out: Out,
+    },
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    match &args.what {
+        What::List { library, json } => list(library, *json),
+        What::Show { case, library } => say(library.library().scene_text(case)?.trim_end()),
+        What::New { name, out } => {
+            let text = STARTER.replacen("my-scene", name, 1);
+            parse(&text, "the new scene")?;
+            let file = out
+                .out
+                .clone()
+                .unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+            write(&file, out.force, &text)?;
+            say(format_args!(
+                "{} written; try `carom run {0}`",
+                file.display()
+            ))
+        }
+        What::Generate { recipe } => generate(recipe),
+    }
+}
+
+#[derive(serde::Serialize)]
+struct Listed {
+    name: String,
+    title: String,
+    bodies: usize,
+    duration_s: f64,
+    has_truth: bool,
+}
+
+fn list(library: &LibraryArgs, json: bool) -> Result<()> {
+    let library = library.library();
+    let listed = library
+        .names()?
+        .into_iter()
+        .map(|name| {
+            let case = library.case(&name)?;
+            Ok(Listed {
+                name,
+                title: case.scene.heading().to_owned(),
+                bodies: case.scene.bodies.len(),
+                duration_s: case.scene.duration,
+                has_truth: case.truth.is_some(),
+            })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    if json {
+        return say(serde_json::to_string_pretty(&listed)?);
+    }
+    let widest = listed.iter().map(|row| row.name.len()).max().unwrap_or(0);
+    for row in &listed {
+        let truth = if row.has_truth { "truth" } else { "" };
+        say(format_args!(
+            "{:<widest$}  {:<5}  {}",
+            row.name, truth, row.title
+        ))?;
+    }
+    Ok(())
+}
+
+fn generate(recipe: &Recipe) -> Result<()> {
+    let (scene, out): (Scene, &Out) = match recipe {
+        Recipe::Cluster {
+            count,
+            extent,
+            seed,
+            out,
+        } => {
+            let recipe = Cluster {
+                count: *count,
+                extent: *extent,
+                seed: *seed,
+                ..Cluster::default()
+            };
+            (recipe.scene()?, out)
+        }
+        Recipe::Rack {
+            rows,
+            gap,
+            jitter,
+            seed,
+            out,
+        } => {
+            let recipe = Rack {
+                rows: *rows,
+                gap: *gap,
+                jitter: *jitter,
+                seed: *seed,
+                ..Rack::default()
+            };
+            (recipe.scene()?, out)
+        }
+        Recipe::Gas {
+            cells,
+            filling,
+            seed,
+            out,
+        } => (
+            Gas {
+                cells: *cells,
+                filling: *filling,
+                seed: *seed,
+            }
+            .scene()?,
+            out,
+        ),
+    };
+    let text = to_toml(&scene)?;
+    let Some(file) = &out.out else {
+        return say(text.trim_end());
+    };
+    write(file, out.force, &text)
+}
+
+/// Writes a scene file, but never over another one without being told to.
+fn write(file: &Path, force: bool, text: &str) -> Result<()> {
+    if file.exists() && !force {
+        return Err(Error::Exists {
+            path: file.to_owned(),
+        });
+    }
+    let folder = file
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let name = file
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
+    let Some(name) = name else {
+        return Err(Error::Exists {
+            path: file.to_owned(),
+        });
+    };
+    Folder::open(folder.unwrap_or(Path::new(".")))?
+        .write(&name, |out| out.write_all(text.as_bytes()))
+}

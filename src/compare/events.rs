@@ -1,0 +1,200 @@
+//! Impacts matched in order: where do two recordings first tell another story?
+//!
+//! The order that means something is that of each body: two impacts far apart on the table may
+//! swap without anyone noticing. So impacts are matched body by body, as a graph in which each
+//! impact follows the last one of each body that takes part.
+
+use std::collections::VecDeque;
+
+use crate::recording::{Event, Recording};
+use crate::scene::Scene;
+
+/// The first impact at which two recordings disagree: one has it, the other does not have it
+/// next for those bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disagreement {
+    /// The impact of the first recording, if it has one there.
+    pub event_a: Option<Event>,
+    /// The impact of the second recording for the same bodies, if it has one there.
+    pub event_b: Option<Event>,
+}
+
+impl Disagreement {
+    /// The earlier of the two times, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        let time = |event: Option<Event>| event.map_or(f64::INFINITY, |event| event.time);
+        time(self.event_a).min(time(self.event_b))
+    }
+}
+
+/// How the impacts of two recordings match.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EventAgreement {
+    /// Impacts that match: the same bodies, and the same history of each of them.
+    pub matched: usize,
+    /// Largest difference in time of two matched impacts, s.
+    pub time_difference_max: f64,
+    /// The earliest disagreement.
+    pub first_disagreement: Option<Disagreement>,
+}
+
+/// For each body, the places of its impacts in a list, the next one first.
+struct Histories<'a> {
+    impacts: Vec<&'a Event>,
+    next: Vec<VecDeque<usize>>,
+}
+
+impl<'a> Histories<'a> {
+    fn of(recording: &'a Recording, bodies: usize) -> Self {
+        let impacts: Vec<_> = recording.events.impacts().collect();
+        let mut next = vec![VecDeque::new(); bodies];
+        for (place, event) in impacts.iter().enumerate() {
+            for body in participants(event) {
+                next[body].push_back(place);
+            }
+        }
+        Self { impacts, next }
+    }
+
+    fn next_of(&self, body: usize) -> Option<&'a Event> {
+        self.next[body].front().map(|place| self.impacts[*place])
+    }
+
+    /// The same impact, if it comes next for every body that takes part.
+    fn take_like(&mut self, event: &Event) -> Option<&'a Event> {
+        let mut places = participants(event).map(|body| self.next[body].front().copied());
+        let place = places.next()??;
+        let same = self.impacts[place].kind == event.kind && places.all(|p| p == Some(place));
+        if !same {
+            return None;
+        }
+        for body in participants(event) {
+            self.next[body].pop_front();
+        }
+        Some(self.impacts[place])
+    }
+}
+
+fn participants(event: &Event) -> impl Iterator<Item = usize> + use<> {
+    let (first, second) = event.kind.bodies();
+    std::iter::once(first).chain(second)
+}
+
+/// Matches the impacts of two recordings of `scene`.
+///
+/// After a disagreement the bodies that take part, and whoever meets them later, are no longer
+/// compared. An impact within two steps of the end that only one recording has is no
+/// disagreement: the other may have it just past the end.
+#[must_use]
+pub fn compare_events(scene: &Scene, a: &Recording, b: &Recording) -> EventAgreement {
+    let bodies = scene.bodies.len();
+    let step = a.step.unwrap_or(0.0).max(b.step.unwrap_or(0.0));
+    let samples = a.sample_count().min(b.sample_count());
+    let end = scene.sample_time(samples - 1) - 2.0 * step;
+    let (mine, mut other) = (Histories::of(a, bodies), Histories::of(b, bodies));
+    let mut parted = vec![false; bodies];
+    let mut agreement = EventAgreement::default();
+    let mut disagreements = Vec::new();
+    for event in &mine.impacts {
+        if participants(event).any(|body| parted[body]) {
+            participants(event).for_each(|body| parted[body] = true);
+        } else if let Some(twin) = other.take_like(event) {
+            agreement.matched += 1;
+            let difference = (event.time - twin.time).abs();
+            agreement.time_difference_max = agreement.time_difference_max.max(difference);
+        } else {
+            let rivals = participants(event).filter_map(|body| other.next_of(body));
+            let rival = rivals.min_by(|x, y| x.time.total_cmp(&y.time)).copied();
+            disagreements.push(Disagreement {
+                event_a: Some(**event),
+                event_b: rival,
+            });
+            participants(event)
+                .chain(rival.iter().flat_map(participants))
+                .for_each(|body| parted[body] = true);
+        }
+    }
+    for body in (0..bodies).filter(|body| !parted[*body]) {
+        let left = other.next_of(body).copied();
+        disagreements.extend(left.map(|event| Disagreement {
+            event_a: None,
+            event_b: Some(event),
+        }));
+    }
+    agreement.first_disagreement = disagreements
+        .into_iter()
+        .filter(|disagreement| disagreement.time() <= end)
+        .min_by(|x, y| x.time().total_cmp(&y.time()));
+    agreement
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::EventKind;
+
+    fn scene() -> Scene {
+        let body = |name: &str| {
+            format!(
+                "[[bodies]]\nname='{name}'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[0,0,0]\n"
+            )
+        };
+        let bodies: String = ["a", "b", "c", "d"].map(body).concat();
+        let text = format!("name='x'\nduration=9\nsample_every=9\n{bodies}");
+        crate::scene::parse(&text, "x").unwrap()
+    }
+
+    fn recording(scene: &Scene, contacts: &[(f64, usize, usize)]) -> Recording {
+        let mut recording = Recording::at_start("x", scene);
+        let events = contacts.iter().map(|&(time, a, b)| Event {
+            time,
+            kind: EventKind::Contact { a, b },
+            impulse: 1.0,
+        });
+        recording.events = events.collect();
+        recording.push(&crate::recording::initial_states(scene));
+        recording
+    }
+
+    #[test]
+    fn impacts_of_strangers_may_swap() {
+        let scene = scene();
+        let a = recording(&scene, &[(1.0, 0, 1), (1.1, 2, 3), (2.0, 1, 2)]);
+        let b = recording(&scene, &[(1.05, 2, 3), (1.06, 0, 1), (2.25, 1, 2)]);
+        let agreement = compare_events(&scene, &a, &b);
+        assert_eq!((agreement.matched, agreement.first_disagreement), (3, None));
+        assert_eq!(agreement.time_difference_max, 0.25);
+    }
+
+    #[test]
+    fn the_first_of_several_disagreements_is_named() {
+        let scene = scene();
+        let a = recording(&scene, &[(1.0, 0, 1), (2.0, 1, 2), (3.0, 0, 3)]);
+        let b = recording(&scene, &[(1.0, 0, 1), (2.5, 1, 3), (3.0, 0, 3)]);
+        let first = compare_events(&scene, &a, &b).first_disagreement.unwrap();
+        assert_eq!(
+            first.event_a.unwrap().kind,
+            EventKind::Contact { a: 1, b: 2 }
+        );
+        assert_eq!(
+            first.event_b.unwrap().kind,
+            EventKind::Contact { a: 1, b: 3 }
+        );
+        assert_eq!(first.time(), 2.0);
+    }
+
+    #[test]
+    fn an_impact_that_only_one_has_is_found_from_either_side() {
+        let scene = scene();
+        let a = recording(&scene, &[(1.0, 0, 1)]);
+        let b = recording(&scene, &[(1.0, 0, 1), (2.0, 2, 3)]);
+        let [forth, back] = [
+            compare_events(&scene, &a, &b),
+            compare_events(&scene, &b, &a),
+        ];
+        assert_eq!(forth.first_disagreement.unwrap().event_b.unwrap().time, 2.0);
+        assert_eq!(back.first_disagreement.unwrap().event_a.unwrap().time, 2.0);
+        assert_eq!((forth.matched, back.matched), (1, 1));
+    }
+}

@@ -1,0 +1,45 @@
+//! Pictures: plain data in, PNG bytes out. Nothing here knows scenes or engines.
+//!
+//! plotters draws SVG with a font carried by a crate, resvg makes the PNG. The same data
+//! give the same bytes. No data make it fail: what cannot be drawn (NaN, infinities) is
+//! a gap in a curve, and a picture without data says so.
+
+mod axis;
+mod canvas;
+mod curves;
+mod legend;
+mod paths;
+mod png;
+mod polyline;
+mod text;
+mod theme;
+mod ticks;
+mod window;
+
+#[cfg(test)]
+mod testing;
+
+pub use axis::Scale;
+pub use curves::{Curve, CurvesFigure, Marks, Panel, Weight, curves};
+pub use paths::{AxisLabel, PathBody, PathsFigure, View, paths};
+pub use theme::{COLOR_COUNT, LineStyle};
+
+/// Why a picture could not be made. None of these depends on the data.
+#[derive(Debug, thiserror::Error)]
+pub enum ChartError {
+    /// The font that the program carries is not readable.
+    #[error("the built-in font cannot be read")]
+    Font,
+    /// There is no memory for the pixels.
+    #[error("no canvas of the picture's size")]
+    Canvas,
+    /// plotters refused to draw.
+    #[error("drawing failed: {0}")]
+    Draw(#[from] plotters::drawing::DrawingAreaErrorKind<std::io::Error>),
+    /// resvg does not accept the drawing.
+    #[error("the drawing is not valid SVG: {0}")]
+    Svg(#[from] resvg::usvg::Error),
+    /// The PNG could not be encoded.
+    #[error("the PNG could not be encoded: {0}")]
+    Png(#[from] ::png::EncodingError),
+}

@@ -1,0 +1,41 @@
+//! Numbers for people.
+
+/// Three significant digits, plain between 0.001 and a million, powers of ten outside.
+///
+/// ```
+/// use carom::report::engineering;
+/// assert_eq!(engineering(1234.5), "1234");
+/// assert_eq!(engineering(0.0123456), "0.0123");
+/// assert_eq!(engineering(-3.2e-14), "-3.2e-14");
+/// assert_eq!(engineering(0.0), "0");
+/// ```
+#[must_use]
+pub fn engineering(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "not finite".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.1e}");
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "between -3 and 5")]
+    let digits_before = size.log10().floor() as i32;
+    let decimals = usize::try_from(2 - digits_before).unwrap_or(0);
+    format!("{value:.decimals$}")
+}
+
+/// A share as a percentage; tiny shares as powers of ten.
+///
+/// ```
+/// use carom::report::percent;
+/// assert_eq!(percent(0.1234), "12.3 %");
+/// assert_eq!(percent(0.0), "0 %");
+/// assert_eq!(percent(2e-15), "2.0e-13 %");
+/// ```
+#[must_use]
+pub fn percent(share: f64) -> String {
+    format!("{} %", engineering(100.0 * share))
+}

@@ -1,0 +1,345 @@
+//! The index of a report: what was found over all cases, and a row for each.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::case_page::with_unit;
+use super::output::write_json;
+use super::template::fill;
+use super::{Folder, engineering, percent};
+use crate::engine::EngineSpec;
+use crate::error::Result;
+use crate::study::{PairSummary, Summary, VoiceSummary};
+
+const TEMPLATE: &str = include_str!("../../templates/index.md");
+
+/// Two voices of a scene count as agreeing while they stay within this share of its size.
+const AGREEING: f64 = 0.01;
+
+/// What the template is given.
+#[derive(Serialize)]
+struct Page<'a> {
+    findings: Vec<String>,
+    telling: Option<Telling>,
+    first: &'a str,
+    second: &'a str,
+    engines: Vec<EngineRow>,
+    rows: Vec<Row>,
+    truth_rows: Vec<TruthRow>,
+    versions: BTreeMap<&'static str, String>,
+    dt: String,
+    cases: usize,
+    with_truth: usize,
+    pictures: bool,
+}
+
+#[derive(Serialize)]
+struct Telling {
+    scene: String,
+    title: String,
+    caption: String,
+}
+
+#[derive(Serialize)]
+struct EngineRow {
+    name: String,
+    summary: &'static str,
+    settings: String,
+}
+
+#[derive(Serialize)]
+struct Row {
+    scene: String,
+    title: String,
+    divergence: String,
+    relative: String,
+    energy: [String; 2],
+    momentum: [String; 2],
+    disagreement: String,
+    outcome: String,
+}
+
+#[derive(Serialize)]
+struct TruthRow {
+    scene: String,
+    errors: Vec<String>,
+}
+
+/// All figures of a report, for programs.
+#[derive(Serialize)]
+struct Everything<'a> {
+    versions: BTreeMap<&'static str, String>,
+    dt_s: f64,
+    engines: &'a [EngineSpec],
+    cases: &'a [Summary],
+}
+
+/// Writes `README.md` and `summary.json` of a report.
+///
+/// # Errors
+/// A file that cannot be written, with its name.
+pub fn write_index(
+    folder: &Folder,
+    summaries: &[Summary],
+    engines: &[EngineSpec],
+    dt: f64,
+) -> Result<()> {
+    let page = index_page(summaries, engines, dt)?;
+    folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    let everything = Everything {
+        versions: crate::engine::versions(),
+        dt_s: dt,
+        engines,
+        cases: summaries,
+    };
+    folder.write("summary.json", |out| write_json(out, &everything))
+}
+
+/// The index as Markdown. The first two engines are the ones that its table compares.
+///
+/// # Errors
+/// A fault of the template.
+pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Result<String> {
+    let name = |place: usize| engines.get(place).map_or("", |spec| spec.name.as_str());
+    let (first, second) = (name(0), name(1));
+    let telling = most_telling(summaries, first, second);
+    let page = Page {
+        findings: findings(summaries, engines),
+        telling: telling.map(|(summary, pair)| Telling {
+            scene: summary.scene.clone(),
+            title: summary.title.clone(),
+            caption: caption(summary, pair),
+        }),
+        first,
+        second,
+        engines: engines
+            .iter()
+            .map(|spec| EngineRow {
+                name: spec.name.clone(),
+                summary: spec.summary,
+                settings: spec.describe(),
+            })
+            .collect(),
+        rows: summaries
+            .iter()
+            .filter_map(|summary| row(summary, first, second))
+            .collect(),
+        truth_rows: summaries
+            .iter()
+            .filter_map(|summary| truth_row(summary, engines))
+            .collect(),
+        versions: crate::engine::versions(),
+        dt: engineering(dt),
+        cases: summaries.len(),
+        with_truth: summaries
+            .iter()
+            .filter(|summary| truth(summary).is_some())
+            .count(),
+        pictures: cfg!(feature = "plots"),
+    };
+    fill(TEMPLATE, page)
+}
+
+fn truth(summary: &Summary) -> Option<&VoiceSummary> {
+    summary.voices.iter().find(|voice| voice.engine.is_none())
+}
+
+/// The largest error of an engine against truth, as a share of the scene's size.
+fn error(summary: &Summary, engine: &str) -> Option<f64> {
+    let truth = truth(summary)?;
+    Some(
+        summary
+            .pair(engine, &truth.voice)?
+            .position_divergence_relative,
+    )
+}
+
+/// The case whose picture says most: of those in which two engines disagree about the course
+/// of events, the one with truth in which they are farthest apart.
+fn most_telling<'a>(
+    summaries: &'a [Summary],
+    first: &str,
+    second: &str,
+) -> Option<(&'a Summary, &'a PairSummary)> {
+    let pairs = summaries
+        .iter()
+        .filter_map(|summary| Some((summary, summary.pair(first, second)?)));
+    let weight = |(summary, pair): &(&Summary, &PairSummary)| {
+        let story = f64::from(u8::from(pair.first_disagreement.is_some()));
+        let truth = f64::from(u8::from(truth(summary).is_some()));
+        2.0 * story + truth + pair.position_divergence_relative.min(1.0)
+    };
+    pairs.max_by(|a, b| weight(a).total_cmp(&weight(b)))
+}
+
+fn caption(summary: &Summary, pair: &PairSummary) -> String {
+    let unit = summary.length_unit.symbol();
+    let told = pair
+        .first_disagreement
+        .as_ref()
+        .map_or(String::new(), |first| {
+            format!(" The first impact on which they disagree: {}.", first.text)
+        });
+    format!(
+        "{}: {} and {} part by {} ({} of the scene's size).{told}",
+        summary.title,
+        pair.engine_a,
+        pair.engine_b,
+        with_unit(pair.position_divergence_max, unit),
+        percent(pair.position_divergence_relative)
+    )
+}
+
+/// What was found, a sentence each, all counted here and now.
+fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if let [first, second, ..] = engines {
+        sentences.extend(parting(summaries, &first.name, &second.name));
+    }
+    let with_truth: Vec<_> = summaries
+        .iter()
+        .filter(|summary| truth(summary).is_some())
+        .collect();
+    if !with_truth.is_empty() && !engines.is_empty() {
+        sentences.push(nearest(&with_truth, engines));
+    }
+    let unfinished: Vec<_> = summaries
+        .iter()
+        .flat_map(|summary| summary.voices.iter().map(move |voice| (summary, voice)))
+        .filter(|(_, voice)| !voice.outcome.is_finished())
+        .map(|(summary, voice)| {
+            format!(
+                "{} in `{}`: {}",
+                voice.voice, summary.scene, voice.outcome_text
+            )
+        })
+        .collect();
+    if unfinished.is_empty() {
+        sentences.push("Every engine finished every case.".into());
+    } else {
+        sentences.push(format!("Not finished: {}.", unfinished.join("; ")));
+    }
+    sentences
+}
+
+fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
+    let pairs: Vec<_> = summaries
+        .iter()
+        .filter_map(|summary| Some((summary, summary.pair(first, second)?)))
+        .collect();
+    let farthest = pairs.iter().max_by(|(_, a), (_, b)| {
+        a.position_divergence_relative
+            .total_cmp(&b.position_divergence_relative)
+    })?;
+    let together = pairs
+        .iter()
+        .filter(|(_, p)| p.position_divergence_relative <= AGREEING)
+        .count();
+    let stories = pairs
+        .iter()
+        .filter(|(_, pair)| pair.first_disagreement.is_some())
+        .count();
+    let (summary, pair) = farthest;
+    Some(format!(
+        "In {together} of {} cases `{first}` and `{second}` stay within {} of the scene's size of each \
+         other; in {stories} they disagree about which impact comes next. They part most in \
+         [{}]({}/README.md), by {} ({} of its size).",
+        pairs.len(),
+        percent(AGREEING),
+        summary.title,
+        summary.scene,
+        with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
+        percent(pair.position_divergence_relative),
+    ))
+}
+
+/// Who is nearest to truth how often, and each engine's middle error.
+fn nearest(with_truth: &[&Summary], engines: &[EngineSpec]) -> String {
+    let errors = |name: &str| -> Vec<f64> {
+        let mut errors: Vec<_> = with_truth
+            .iter()
+            .filter_map(|summary| error(summary, name))
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        errors
+    };
+    let middle = |sorted: &[f64]| sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let within = |sorted: &[f64]| sorted.iter().filter(|error| **error <= AGREEING).count();
+    let rows: Vec<_> = engines
+        .iter()
+        .map(|spec| {
+            let errors = errors(&spec.name);
+            format!(
+                "`{}` in {} (median error {})",
+                spec.name,
+                within(&errors),
+                percent(middle(&errors))
+            )
+        })
+        .collect();
+    format!(
+        "Truth is known in {} cases. Within {} of the scene's size of it, to the end: {}.",
+        with_truth.len(),
+        percent(AGREEING),
+        rows.join(", ")
+    )
+}
+
+fn row(summary: &Summary, first: &str, second: &str) -> Option<Row> {
+    let unit = summary.length_unit.symbol();
+    let pair = summary.pair(first, second)?;
+    let of = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
+    let both = [of(first)?, of(second)?];
+    let energy = |voice: &VoiceSummary| {
+        if summary.model_conserves_energy {
+            percent(voice.drift.energy_drift_max)
+        } else {
+            format!("({})", percent(voice.drift.energy_change))
+        }
+    };
+    let momentum = |voice: &VoiceSummary| {
+        if summary.model_conserves_momentum {
+            percent(voice.drift.momentum_drift_max)
+        } else {
+            "–".to_owned()
+        }
+    };
+    let unfinished = both.iter().find(|voice| !voice.outcome.is_finished());
+    Some(Row {
+        scene: summary.scene.clone(),
+        title: summary.title.clone(),
+        divergence: with_unit(pair.position_divergence_max, unit),
+        relative: percent(pair.position_divergence_relative),
+        energy: both.map(energy),
+        momentum: both.map(momentum),
+        disagreement: pair.first_disagreement.as_ref().map_or_else(
+            || {
+                if pair.impacts_matched > 0 {
+                    "none".to_owned()
+                } else {
+                    "no impacts".to_owned()
+                }
+            },
+            |first| first.text.clone(),
+        ),
+        outcome: unfinished.map_or(String::new(), |voice| {
+            format!("{}: {}", voice.voice, voice.outcome.word())
+        }),
+    })
+}
+
+fn truth_row(summary: &Summary, engines: &[EngineSpec]) -> Option<TruthRow> {
+    truth(summary)?;
+    let unit = summary.length_unit.symbol();
+    let cell = |spec: &EngineSpec| {
+        let pair = summary.pair(&spec.name, "truth");
+        pair.map_or(String::new(), |pair| {
+            with_unit(pair.position_divergence_max, unit)
+        })
+    };
+    Some(TruthRow {
+        scene: summary.scene.clone(),
+        errors: engines.iter().map(cell).collect(),
+    })
+}

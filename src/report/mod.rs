@@ -1,0 +1,19 @@
+//! Results in, bytes out: tables, pictures, pages. One manager owns the files.
+
+mod case_page;
+#[cfg(feature = "plots")]
+pub mod chart;
+mod files;
+mod format;
+mod index_page;
+mod output;
+#[cfg(feature = "plots")]
+mod pictures;
+mod tables;
+mod template;
+
+pub use case_page::findings;
+pub use files::{Folder, remove_unfinished};
+pub use format::{engineering, percent};
+pub use index_page::{index_page, write_index};
+pub use output::{Pictured, write_comparison};

@@ -1,0 +1,79 @@
+//! Everything that one comparison leaves in its folder.
+
+use std::io::Write;
+
+use super::Folder;
+use super::case_page::case_page;
+use super::tables::{write_divergence, write_metrics};
+use crate::error::Result;
+use crate::recording::{write_events, write_trajectory};
+use crate::study::{SideBySide, Summary, Voice};
+
+/// Which voices a comparison's pictures show: two or three, or they show nothing clearly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pictured {
+    /// How many engines at most, in the order in which they were asked for.
+    pub engines: usize,
+}
+
+impl Pictured {
+    /// The engines first named, then truth.
+    fn voices(self, comparison: &SideBySide) -> Vec<&Voice> {
+        let truth = comparison
+            .voices
+            .iter()
+            .filter(|voice| voice.spec.is_none());
+        let engines = comparison
+            .voices
+            .iter()
+            .filter(|voice| voice.spec.is_some());
+        engines.take(self.engines).chain(truth).take(3).collect()
+    }
+}
+
+/// Writes tables, pictures, page and summary of a comparison; gives the summary.
+///
+/// # Errors
+/// A file that cannot be written, with its name; each file is whole or not there.
+pub fn write_comparison(
+    folder: &Folder,
+    comparison: &SideBySide,
+    pictured: Pictured,
+) -> Result<Summary> {
+    let scene = &comparison.scene;
+    let summary = Summary::of(comparison);
+    for voice in &comparison.voices {
+        let name = voice.name();
+        folder.write(&format!("trajectory-{name}.csv"), |out| {
+            Ok(write_trajectory(&voice.recording, scene, out)?)
+        })?;
+        folder.write(&format!("events-{name}.csv"), |out| {
+            Ok(write_events(&voice.recording.events, scene, out)?)
+        })?;
+    }
+    folder.write("metrics.csv", |out| write_metrics(comparison, out))?;
+    folder.write("divergence.csv", |out| write_divergence(comparison, out))?;
+    let voices = pictured.voices(comparison);
+    #[cfg(feature = "plots")]
+    let pictures = super::pictures::pictures(comparison, &voices)?;
+    #[cfg(not(feature = "plots"))]
+    let pictures: Vec<(&str, Vec<u8>)> = Vec::new();
+    for (name, bytes) in &pictures {
+        folder.write(name, |out| out.write_all(bytes))?;
+    }
+    let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
+    let shown: Vec<_> = voices.iter().map(|voice| voice.name()).collect();
+    let page = case_page(&summary, &names, &shown)?;
+    folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    folder.write("summary.json", |out| write_json(out, &summary))?;
+    Ok(summary)
+}
+
+/// Writes a value as JSON that people can read too.
+pub(super) fn write_json(
+    out: &mut dyn Write,
+    value: &impl serde::Serialize,
+) -> std::io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
+    out.write_all(b"\n")
+}

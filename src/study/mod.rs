@@ -1,0 +1,9 @@
+//! The questions that need many runs.
+
+mod side_by_side;
+mod summary;
+mod tracks;
+
+pub use side_by_side::{SideBySide, Voice, side_by_side};
+pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};
+pub use tracks::{Track, track};

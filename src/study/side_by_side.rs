@@ -1,0 +1,120 @@
+//! One case on several engines, on one time grid, compared with each other and with truth.
+
+use rayon::prelude::*;
+
+use crate::case::Case;
+use crate::compare::{
+    Divergence, Drift, EventAgreement, Metrics, compare_events, metrics, scene_size,
+};
+use crate::engine::{EngineSpec, record};
+use crate::error::Result;
+use crate::recording::Recording;
+use crate::scene::Scene;
+
+/// One voice in a comparison: an engine's recording, or truth.
+#[derive(Debug, Clone)]
+pub struct Voice {
+    /// The engine; none for truth.
+    pub spec: Option<EngineSpec>,
+    /// What it produced.
+    pub recording: Recording,
+    /// Conserved quantities, sample by sample.
+    pub metrics: Vec<Metrics>,
+    /// How far these drift.
+    pub drift: Drift,
+}
+
+impl Voice {
+    fn new(scene: &Scene, spec: Option<EngineSpec>, recording: Recording) -> Self {
+        let metrics = metrics(scene, &recording);
+        let drift = Drift::of(&metrics);
+        Self {
+            spec,
+            recording,
+            metrics,
+            drift,
+        }
+    }
+
+    /// The name: an engine's, or `truth`.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.recording.voice
+    }
+}
+
+/// A case on several engines, compared.
+#[derive(Debug, Clone)]
+pub struct SideBySide {
+    /// The scene.
+    pub scene: Scene,
+    /// Where the truth comes from, where there is one.
+    pub origin: Option<String>,
+    /// The largest step asked for, s.
+    pub dt: f64,
+    /// The engines in the order asked for, then truth.
+    pub voices: Vec<Voice>,
+    /// Every pair of voices, in order.
+    pub pairs: Vec<(Divergence, EventAgreement)>,
+    /// Diagonal of the box of all positions, the yardstick of divergences.
+    pub size: f64,
+}
+
+impl SideBySide {
+    /// The voice of that name.
+    #[must_use]
+    pub fn voice(&self, name: &str) -> Option<&Voice> {
+        self.voices.iter().find(|voice| voice.name() == name)
+    }
+
+    /// The comparison of two voices, in either order.
+    #[must_use]
+    pub fn pair(&self, a: &str, b: &str) -> Option<&(Divergence, EventAgreement)> {
+        self.pairs
+            .iter()
+            .find(|(divergence, _)| divergence.is_between(a, b))
+    }
+}
+
+/// Runs every engine on a case and compares all voices, pair by pair.
+///
+/// # Errors
+/// As [`record`]; an engine that blows up is a result, not an error.
+pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBySide> {
+    let scene = &case.scene;
+    let mut voices = specs
+        .par_iter()
+        .map(|spec| {
+            Ok(Voice::new(
+                scene,
+                Some(spec.clone()),
+                record(scene, spec, dt)?,
+            ))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    voices.extend(
+        case.truth
+            .iter()
+            .map(|truth| Voice::new(scene, None, truth.clone())),
+    );
+    let recordings: Vec<_> = voices.iter().map(|voice| voice.recording.clone()).collect();
+    let later = |a: usize| (a + 1..recordings.len()).map(move |b| (a, b));
+    let pairs = (0..recordings.len())
+        .flat_map(later)
+        .map(|(a, b)| {
+            let (a, b) = (&recordings[a], &recordings[b]);
+            (
+                Divergence::between(scene, a, b),
+                compare_events(scene, a, b),
+            )
+        })
+        .collect();
+    Ok(SideBySide {
+        scene: scene.clone(),
+        origin: case.origin.clone(),
+        dt,
+        size: scene_size(&recordings),
+        voices,
+        pairs,
+    })
+}

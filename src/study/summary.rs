@@ -1,0 +1,273 @@
+//! The figures of a comparison, as programs read them (`summary.json`) and pages show them.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::{SideBySide, Voice};
+use crate::compare::{Disagreement, Divergence, Drift, EventAgreement};
+use crate::engine::{EngineSpec, notes};
+use crate::recording::{Event, EventCounts, EventKind, Outcome, Work};
+use crate::scene::{LengthUnit, Scene};
+
+/// Everything about one comparison but the curves.
+#[derive(Debug, Clone, Serialize)]
+pub struct Summary {
+    /// Version of carom.
+    pub carom_version: &'static str,
+    /// Name of the scene.
+    pub scene: String,
+    /// Title of the scene, or its name.
+    pub title: String,
+    /// Where the scene comes from.
+    pub source: Option<String>,
+    /// What to look for.
+    pub watch: Option<String>,
+    /// Number of bodies.
+    pub bodies: usize,
+    /// s.
+    pub duration_s: f64,
+    /// s.
+    pub sample_every_s: f64,
+    /// Unit of length.
+    pub length_unit: LengthUnit,
+    /// Largest step asked for, s.
+    pub dt_s: f64,
+    /// Diagonal of the box of all positions, scene length unit.
+    pub size: f64,
+    /// Whether the model keeps the energy.
+    pub model_conserves_energy: bool,
+    /// Whether the model keeps the momentum.
+    pub model_conserves_momentum: bool,
+    /// What is allowed but worth saying.
+    pub warnings: Vec<String>,
+    /// Where the truth comes from.
+    pub truth_origin: Option<String>,
+    /// Each engine, then truth.
+    pub voices: Vec<VoiceSummary>,
+    /// Each pair of voices.
+    pub pairs: Vec<PairSummary>,
+}
+
+/// The figures of one voice.
+#[derive(Debug, Clone, Serialize)]
+pub struct VoiceSummary {
+    /// Name of the voice.
+    pub voice: String,
+    /// The engine with its settings; none for truth.
+    pub engine: Option<EngineSpec>,
+    /// What the harness supplies and what differs from the lecture.
+    pub notes: Vec<String>,
+    /// The step taken, s.
+    pub step_s: Option<f64>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// The same in words.
+    pub outcome_text: String,
+    /// Samples kept, the start included.
+    pub samples: usize,
+    /// Events counted.
+    pub events: EventCounts,
+    /// Events that share a row of the file with another.
+    pub events_merged: u64,
+    /// Counted work.
+    pub work: Work,
+    /// Drift of energy and momentum, and the deepest penetration.
+    #[serde(flatten)]
+    pub drift: Drift,
+}
+
+/// The figures of one pair of voices.
+#[derive(Debug, Clone, Serialize)]
+pub struct PairSummary {
+    /// First voice.
+    pub engine_a: String,
+    /// Second voice.
+    pub engine_b: String,
+    /// Largest distance of one body, scene length unit.
+    pub position_divergence_max: f64,
+    /// The same over the scene's size.
+    pub position_divergence_relative: f64,
+    /// When, s.
+    pub at_time_s: f64,
+    /// Which body.
+    pub worst_body: String,
+    /// Largest rms difference of velocities, scene length unit per second.
+    pub velocity_divergence_rms_max: f64,
+    /// Largest difference of the total energies, over the larger energy scale.
+    pub energy_difference_max: f64,
+    /// Largest difference of the total momenta, over the larger momentum scale.
+    pub momentum_difference_max: f64,
+    /// Largest distance of the two centres of mass, scene length unit.
+    pub centre_of_mass_difference_max: f64,
+    /// Impacts that match in order.
+    pub impacts_matched: usize,
+    /// Largest difference in time of two matched impacts, s.
+    pub impact_time_difference_max_s: f64,
+    /// The first impact on which the two disagree.
+    pub first_disagreement: Option<DisagreementSummary>,
+    /// Largest distance of each body.
+    pub body_position_divergence_max: BTreeMap<String, f64>,
+}
+
+/// The first impact on which two voices disagree.
+#[derive(Debug, Clone, Serialize)]
+pub struct DisagreementSummary {
+    /// s.
+    pub time_s: f64,
+    /// Who has what, in words.
+    pub text: String,
+}
+
+impl Summary {
+    /// The figures of a comparison.
+    #[must_use]
+    pub fn of(comparison: &SideBySide) -> Self {
+        let scene = &comparison.scene;
+        Self {
+            carom_version: env!("CARGO_PKG_VERSION"),
+            scene: scene.name.clone(),
+            title: scene.heading().to_owned(),
+            source: scene.source.clone(),
+            watch: scene.watch.clone(),
+            bodies: scene.bodies.len(),
+            duration_s: scene.duration,
+            sample_every_s: scene.sample_every,
+            length_unit: scene.units.length,
+            dt_s: comparison.dt,
+            size: comparison.size,
+            model_conserves_energy: scene.effects.conserve_energy(),
+            model_conserves_momentum: scene.effects.conserve_momentum(),
+            warnings: scene.warnings().iter().map(ToString::to_string).collect(),
+            truth_origin: comparison.origin.clone(),
+            voices: comparison
+                .voices
+                .iter()
+                .map(|voice| VoiceSummary::of(scene, voice))
+                .collect(),
+            pairs: comparison
+                .pairs
+                .iter()
+                .filter_map(|(divergence, agreement)| {
+                    PairSummary::of(comparison, divergence, agreement)
+                })
+                .collect(),
+        }
+    }
+
+    /// The figures of the pair, in either order.
+    #[must_use]
+    pub fn pair(&self, a: &str, b: &str) -> Option<&PairSummary> {
+        self.pairs.iter().find(|pair| {
+            (pair.engine_a == a && pair.engine_b == b) || (pair.engine_a == b && pair.engine_b == a)
+        })
+    }
+}
+
+impl VoiceSummary {
+    fn of(scene: &Scene, voice: &Voice) -> Self {
+        let recording = &voice.recording;
+        Self {
+            voice: voice.name().to_owned(),
+            notes: voice
+                .spec
+                .as_ref()
+                .map(|spec| notes(scene, spec))
+                .unwrap_or_default(),
+            engine: voice.spec.clone(),
+            step_s: recording.step,
+            outcome: recording.outcome,
+            outcome_text: recording.outcome.describe(scene).to_string(),
+            samples: recording.sample_count(),
+            events: recording.events.counts(),
+            events_merged: recording.events.merged(),
+            work: recording.work,
+            drift: voice.drift,
+        }
+    }
+}
+
+impl PairSummary {
+    fn of(
+        comparison: &SideBySide,
+        divergence: &Divergence,
+        agreement: &EventAgreement,
+    ) -> Option<Self> {
+        let scene = &comparison.scene;
+        let a = comparison.voice(&divergence.voice_a)?;
+        let b = comparison.voice(&divergence.voice_b)?;
+        let largest = divergence.largest();
+        let both = || a.metrics.iter().zip(&b.metrics);
+        let scale = |of: fn(&crate::compare::Metrics) -> f64| {
+            both().map(|(a, b)| of(a).max(of(b))).fold(0.0, f64::max)
+        };
+        let energies = both().map(|(a, b)| (a.total_energy() - b.total_energy()).abs());
+        let momenta = both().map(|(a, b)| (a.momentum - b.momentum).norm());
+        let centres = both().map(|(a, b)| (a.centre_of_mass - b.centre_of_mass).norm());
+        let named = |(body, distance): (&crate::scene::Body, &f64)| (body.name.clone(), *distance);
+        Some(Self {
+            engine_a: divergence.voice_a.clone(),
+            engine_b: divergence.voice_b.clone(),
+            position_divergence_max: largest.max_position,
+            position_divergence_relative: relative(largest.max_position, comparison.size),
+            at_time_s: largest.time,
+            worst_body: scene.bodies[largest.worst_body].name.clone(),
+            velocity_divergence_rms_max: divergence
+                .samples
+                .iter()
+                .map(|at| at.rms_velocity)
+                .fold(0.0, f64::max),
+            energy_difference_max: relative(
+                energies.fold(0.0, f64::max),
+                scale(crate::compare::Metrics::energy_scale),
+            ),
+            momentum_difference_max: relative(
+                momenta.fold(0.0, f64::max),
+                scale(|at| at.momentum_scale),
+            ),
+            centre_of_mass_difference_max: centres.fold(0.0, f64::max),
+            impacts_matched: agreement.matched,
+            impact_time_difference_max_s: agreement.time_difference_max,
+            first_disagreement: agreement.first_disagreement.map(|disagreement| {
+                let voices = [divergence.voice_a.as_str(), divergence.voice_b.as_str()];
+                DisagreementSummary::of(scene, voices, &disagreement)
+            }),
+            body_position_divergence_max: scene
+                .bodies
+                .iter()
+                .zip(&divergence.body_max)
+                .map(named)
+                .collect(),
+        })
+    }
+}
+
+impl DisagreementSummary {
+    fn of(scene: &Scene, voices: [&str; 2], disagreement: &Disagreement) -> Self {
+        let says = |voice: &str, event: Option<Event>| match event {
+            Some(event) => format!("{voice} has {}", describe(scene, &event)),
+            None => format!("{voice} has no further impact there"),
+        };
+        let [a, b] = [disagreement.event_a, disagreement.event_b];
+        let text = format!("{}, {}", says(voices[0], a), says(voices[1], b));
+        Self {
+            time_s: disagreement.time(),
+            text,
+        }
+    }
+}
+
+/// An impact in words: who, against whom, when.
+fn describe(scene: &Scene, event: &Event) -> String {
+    let name = |body: usize| &scene.bodies[body].name;
+    let what = match event.kind {
+        EventKind::Contact { a, b } => format!("`{}` hit `{}`", name(a), name(b)),
+        EventKind::Cushion { body, wall } => format!("`{}` hit cushion {wall}", name(body)),
+        EventKind::Rest { body } => format!("`{}` stop", name(body)),
+    };
+    format!("{what} at {:.4} s", event.time)
+}
+
+fn relative(part: f64, whole: f64) -> f64 {
+    if whole == 0.0 { 0.0 } else { part / whole }
+}

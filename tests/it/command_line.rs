@@ -1,0 +1,191 @@
+//! The command line as a user types it.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+
+fn carom(folder: &Path, arguments: &[&str]) -> String {
+    let mut command = Command::cargo_bin("carom").unwrap();
+    let output = command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {said}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_plan_lists_what_the_scene_calls_for_and_nothing_else() {
+    let scratch = tempfile::tempdir().unwrap();
+    let phases = |case: &str| {
+        let text = carom(
+            scratch.path(),
+            &["plan", case, "--engine", "lecture", "--json"],
+        );
+        let plans: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let phases = plans[0]["phases"].as_array().unwrap().clone();
+        phases
+            .iter()
+            .map(|p| p["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(phases("headon-equal"), ["drift", "contacts"]);
+    assert_eq!(
+        phases("shot-2-61"),
+        [
+            "clear", "drag", "kick", "drift", "rest", "cushions", "contacts"
+        ]
+    );
+    assert_eq!(
+        phases("kepler-e06"),
+        ["clear", "attraction", "kick", "drift"]
+    );
+    assert_eq!(
+        phases("spring-under"),
+        ["clear", "springs", "kick", "drift"]
+    );
+}
+
+#[test]
+fn scenes_are_listed_shown_started_and_generated() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let list = carom(folder, &["scenes", "list", "--json"]);
+    let list: serde_json::Value = serde_json::from_str(&list).unwrap();
+    assert!(list.as_array().unwrap().len() >= 18);
+    assert!(carom(folder, &["scenes", "show", "shot-2-96"]).contains("[effects.cushions]"));
+    carom(folder, &["scenes", "new", "mine"]);
+    carom(
+        folder,
+        &[
+            "run",
+            "mine.toml",
+            "--engine",
+            "lecture",
+            "--quiet",
+            "--out",
+            "out",
+        ],
+    );
+    let recipes: [&[&str]; 3] = [
+        &["cluster", "--count", "8"],
+        &["rack", "--jitter", "0.1"],
+        &["gas", "--cells", "2"],
+    ];
+    for recipe in recipes {
+        let make = |seed: &'static str| {
+            carom(
+                folder,
+                &[&["scenes", "generate"], recipe, &["--seed", seed]].concat(),
+            )
+        };
+        assert_eq!(make("7"), make("7"), "the same seed, the same scene");
+        assert_ne!(make("7"), make("8"), "another seed, another scene");
+        carom::scene::parse(&make("7"), "generated").unwrap();
+    }
+}
+
+#[test]
+fn a_new_scene_never_replaces_a_file_unasked() {
+    let scratch = tempfile::tempdir().unwrap();
+    fs::write(scratch.path().join("mine.toml"), "precious").unwrap();
+    let mut command = Command::cargo_bin("carom").unwrap();
+    command
+        .current_dir(scratch.path())
+        .args(["scenes", "new", "mine"])
+        .assert()
+        .code(2);
+    assert_eq!(
+        fs::read_to_string(scratch.path().join("mine.toml")).unwrap(),
+        "precious"
+    );
+    carom(scratch.path(), &["scenes", "new", "mine", "--force"]);
+}
+
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else {
+            found.push((
+                path.to_string_lossy().into_owned(),
+                fs::read(&path).unwrap(),
+            ));
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn a_report_is_whole_and_the_same_every_time() {
+    let scratch = tempfile::tempdir().unwrap();
+    let cases = ["headon-equal", "shot-2-96", "spring-under", "cluster-8"];
+    let report = || {
+        carom(
+            scratch.path(),
+            &[&["report"], &cases[..], &["--quiet"]].concat(),
+        );
+        files(&scratch.path().join("reports"))
+    };
+    let first = report();
+    assert!(first == report(), "the same cases gave other files");
+    let page = fs::read_to_string(scratch.path().join("reports/README.md")).unwrap();
+    let summary = fs::read_to_string(scratch.path().join("reports/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["cases"].as_array().unwrap().len(), cases.len());
+    for case in cases {
+        let folder = scratch.path().join("reports").join(case);
+        if cfg!(feature = "plots") {
+            for picture in ["paths.png", "divergence.png", "energy.png", "momentum.png"] {
+                let bytes = fs::read(folder.join(picture)).unwrap();
+                assert!(bytes.starts_with(b"\x89PNG\r\n"), "{case}/{picture}");
+            }
+        }
+        let metrics = fs::read_to_string(folder.join("metrics.csv")).unwrap();
+        assert!(metrics.starts_with(
+            "time,engine,kinetic_energy,potential_energy,total_energy,momentum_x,momentum_y,\
+             momentum_z,angular_momentum_x,"
+        ));
+        assert!(
+            metrics
+                .lines()
+                .next()
+                .unwrap()
+                .ends_with(",max_penetration")
+        );
+        let divergence = fs::read_to_string(folder.join("divergence.csv")).unwrap();
+        assert!(divergence.starts_with(
+            "time,engine_a,engine_b,rms_position,max_position,worst_body,rms_velocity\n"
+        ));
+        if cfg!(feature = "rapier") {
+            assert!(
+                page.contains(&format!("[{case}]({case}/README.md)")),
+                "{case}"
+            );
+        }
+    }
+    // Every link of every page leads to a file.
+    for (name, bytes) in &first {
+        if !name.ends_with(".md") {
+            continue;
+        }
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        for link in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            let target = Path::new(name).parent().unwrap().join(link);
+            assert!(
+                link.starts_with("http") || target.exists(),
+                "{name}: {link}"
+            );
+        }
+    }
+}
