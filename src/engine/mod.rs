@@ -53,7 +53,7 @@ pub fn prepare(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Box<dyn Simu
     match &spec.kind {
         EngineKind::Impulse => Ok(Box::new(ImpulseSimulation::new(scene, grid))),
         #[cfg(feature = "rapier")]
-        EngineKind::Rapier(settings) => Ok(rapier::simulation(scene, settings, grid)),
+        EngineKind::Rapier(settings) => rapier::simulation(scene, settings, grid),
         #[cfg(not(feature = "rapier"))]
         EngineKind::Rapier(_) => Err(not_built(spec)),
     }
@@ -69,11 +69,36 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     let phases = match &spec.kind {
         EngineKind::Impulse => ImpulseSimulation::new(scene, grid).phases(),
         #[cfg(feature = "rapier")]
-        EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid),
+        EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid)?,
         #[cfg(not(feature = "rapier"))]
         EngineKind::Rapier(_) => return Err(not_built(spec)),
     };
     Ok(Plan { engine: spec.name.clone(), step: grid.step, phases })
+}
+
+/// What an engine does differently from the lecture on this scene, a line each; printed in
+/// plans and reports.
+///
+/// For the lecture's own solver: its departures from the slides that can matter here. For a
+/// Rapier world: what carom itself supplies, and what Rapier computes in another way.
+#[must_use]
+pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
+    match &spec.kind {
+        EngineKind::Impulse => impulse::notes(scene),
+        #[cfg(feature = "rapier")]
+        EngineKind::Rapier(settings) => rapier::notes(scene, settings),
+        #[cfg(not(feature = "rapier"))]
+        EngineKind::Rapier(_) => Vec::new(),
+    }
+}
+
+/// Version of the Rapier crates in this build, as they state it themselves.
+#[must_use]
+pub fn rapier_version() -> Option<&'static str> {
+    #[cfg(feature = "rapier")]
+    return Some(rapier::VERSION);
+    #[cfg(not(feature = "rapier"))]
+    None
 }
 
 #[cfg(not(feature = "rapier"))]
