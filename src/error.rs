@@ -96,6 +96,16 @@ pub enum Error {
         /// The cargo feature that brings it.
         feature: &'static str,
     },
+    /// A scene that an engine cannot compute.
+    #[error("{engine} cannot compute a scene {what}; {remedy}")]
+    EngineCannot {
+        /// The engine.
+        engine: &'static str,
+        /// What it cannot, after "a scene": `with bodies[0].mass = 1e30`.
+        what: String,
+        /// What would be right.
+        remedy: String,
+    },
     /// The same engine twice.
     #[error("engine `{name}` is asked for twice; name each engine once")]
     EngineTwice {

@@ -14,6 +14,8 @@ pub use record::record;
 pub use spec::{EngineKind, EngineSpec, Forces, Precision, RapierSettings, engine, engines};
 pub use steps::{DEFAULT_DT, StepGrid};
 
+use std::collections::BTreeMap;
+
 use crate::error::Result;
 use crate::physics::BodyState;
 use crate::recording::{EventLog, Outcome, Work};
@@ -53,7 +55,7 @@ pub fn prepare(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Box<dyn Simu
     match &spec.kind {
         EngineKind::Impulse => Ok(Box::new(ImpulseSimulation::new(scene, grid))),
         #[cfg(feature = "rapier")]
-        EngineKind::Rapier(settings) => Ok(rapier::simulation(scene, settings, grid)),
+        EngineKind::Rapier(settings) => rapier::simulation(scene, settings, grid),
         #[cfg(not(feature = "rapier"))]
         EngineKind::Rapier(_) => Err(not_built(spec)),
     }
@@ -69,7 +71,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     let phases = match &spec.kind {
         EngineKind::Impulse => ImpulseSimulation::new(scene, grid).phases(),
         #[cfg(feature = "rapier")]
-        EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid),
+        EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid)?,
         #[cfg(not(feature = "rapier"))]
         EngineKind::Rapier(_) => return Err(not_built(spec)),
     };
@@ -80,6 +82,30 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     })
 }
 
+/// What an engine does differently from the lecture on this scene, a line each; printed in
+/// plans and reports.
+///
+/// For the lecture's own solver: its departures from the slides that can matter here. For a
+/// Rapier world: what carom itself supplies, and what Rapier computes in another way.
+#[must_use]
+pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
+    match &spec.kind {
+        EngineKind::Impulse => impulse::notes(scene),
+        #[cfg(feature = "rapier")]
+        EngineKind::Rapier(settings) => rapier::notes(scene, settings),
+        #[cfg(not(feature = "rapier"))]
+        EngineKind::Rapier(_) => Vec::new(),
+    }
+}
+
+/// Version of the Rapier crates in this build, as they state it themselves.
+fn rapier_version() -> Option<&'static str> {
+    #[cfg(feature = "rapier")]
+    return Some(rapier::VERSION);
+    #[cfg(not(feature = "rapier"))]
+    None
+}
+
 #[cfg(not(feature = "rapier"))]
 fn not_built(spec: &EngineSpec) -> crate::error::Error {
     crate::error::Error::EngineNotBuilt {
@@ -88,11 +114,10 @@ fn not_built(spec: &EngineSpec) -> crate::error::Error {
     }
 }
 
-/// Placeholder until merge.
-pub fn notes(_scene: &Scene, _spec: &EngineSpec) -> Vec<String> {
-    Vec::new()
-}
-/// Versions.
-pub fn versions() -> std::collections::BTreeMap<&'static str, String> {
-    std::collections::BTreeMap::from([("carom", env!("CARGO_PKG_VERSION").to_owned())])
+/// Versions of carom and of the Rapier crates in this build.
+#[must_use]
+pub fn versions() -> BTreeMap<&'static str, String> {
+    let carom = Some(("carom", env!("CARGO_PKG_VERSION").to_owned()));
+    let rapier = rapier_version().map(|version| ("rapier3d and rapier3d-f64", version.to_owned()));
+    carom.into_iter().chain(rapier).collect()
 }

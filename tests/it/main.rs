@@ -6,9 +6,13 @@ mod cases;
 mod closed_forms;
 mod command_line;
 mod controls;
+#[cfg(feature = "rapier")]
+mod geometry;
 mod hostile;
 mod invariants;
 mod layers;
 mod oracle;
 mod plain_loop;
+#[cfg(feature = "rapier")]
+mod rapier;
 mod scenes;

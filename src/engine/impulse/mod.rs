@@ -7,9 +7,11 @@
 mod contacts;
 mod cushions;
 mod forces;
+mod notes;
 mod observer;
 mod simulation;
 
+pub use notes::notes;
 pub use simulation::ImpulseSimulation;
 
 use crate::physics::Vector3;

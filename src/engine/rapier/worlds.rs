@@ -1,0 +1,269 @@
+//! The worlds of both precisions, from one source: all that depends on Rapier's crates.
+
+use super::layout::{Combine, Layout};
+use super::range::Range;
+use super::world::{Parameters, World};
+use crate::engine::RapierSettings;
+use crate::physics::{BodyState, Vector3};
+
+pub(super) use double::PhysicsWorldDouble as Double;
+pub(super) use single::PhysicsWorldSingle as Single;
+
+/// Defines the module `$module` with the world `$World` on the crate `$rapier`.
+macro_rules! rapier_world {
+    ($module:ident, $World:ident, $rapier:ident, $real:ident, $range:ident) => {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::unnecessary_cast,
+            clippy::useless_conversion,
+            reason = "one source for both precisions: rounding to the crate's own is its purpose"
+        )]
+        mod $module {
+            use super::{
+                BodyState, Combine, Layout, Parameters, Range, RapierSettings, Vector3, World,
+            };
+            use $rapier::prelude::*;
+
+            /// A world of this crate, and its bodies in the scene's order.
+            pub struct $World {
+                world: PhysicsWorld,
+                bodies: Vec<RigidBodyHandle>,
+            }
+
+            fn vector(v: &Vector3) -> Vector {
+                Vector::new(v.x as $real, v.y as $real, v.z as $real)
+            }
+
+            fn vector3(v: Vector) -> Vector3 {
+                Vector3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+            }
+
+            fn integration_parameters(
+                settings: &RapierSettings,
+                length_unit: f64,
+                step: f64,
+            ) -> IntegrationParameters {
+                let mut p = IntegrationParameters {
+                    dt: step as $real,
+                    length_unit: length_unit as $real,
+                    ..IntegrationParameters::default()
+                };
+                if let Some(iterations) = settings.solver_iterations {
+                    p.num_solver_iterations = iterations;
+                }
+                if let Some(distance) = settings.prediction_distance {
+                    p.normalized_prediction_distance = distance as $real;
+                }
+                if let Some(recycling) = settings.contact_recycling {
+                    p.contact_recycling = recycling;
+                }
+                if let Some(passes) = settings.max_ccd_substeps {
+                    p.max_ccd_substeps = passes;
+                }
+                if !settings.speed_cap {
+                    p.normalized_max_linear_velocity = $real::MAX;
+                }
+                p
+            }
+
+            fn collider(layout: &Layout, shape: ColliderBuilder) -> ColliderBuilder {
+                // Balls in group 1, walls in group 2; without a contact effect balls meet
+                // walls alone. No mass: the body has the scene's own.
+                let meets = if layout.balls_collide {
+                    Group::ALL
+                } else {
+                    Group::GROUP_2
+                };
+                shape
+                    .friction(0.0)
+                    .friction_combine_rule(CoefficientCombineRule::Min)
+                    .mass_properties(MassProperties::default())
+                    .restitution(layout.ball_restitution as $real)
+                    .restitution_combine_rule(CoefficientCombineRule::Min)
+                    .collision_groups(InteractionGroups::new(
+                        Group::GROUP_1,
+                        meets,
+                        InteractionTestMode::And,
+                    ))
+            }
+
+            impl $World {
+                fn insert_ball(&mut self, layout: &Layout, index: usize, state: &BodyState) {
+                    let plan = &layout.bodies[index];
+                    let body = RigidBodyBuilder::dynamic()
+                        .translation(vector(&state.position))
+                        .linvel(vector(&state.velocity))
+                        .linear_damping(plan.damping as $real)
+                        .additional_mass_properties(MassProperties::new(
+                            Vector::ZERO,
+                            plan.mass as $real,
+                            Vector::ZERO,
+                        ))
+                        .lock_rotations()
+                        .can_sleep(false)
+                        .user_data(index as u128);
+                    let handle = self.world.insert_body(body);
+                    self.bodies.push(handle);
+                    if layout.has_colliders() {
+                        let ball = ColliderBuilder::ball(plan.radius as $real);
+                        let ball = collider(layout, ball).user_data(index as u128);
+                        self.world.insert_collider(ball, Some(handle));
+                    }
+                }
+
+                fn insert_walls(&mut self, layout: &Layout) {
+                    let rule = match layout.wall_rule {
+                        Combine::Min => CoefficientCombineRule::Min,
+                        Combine::Max => CoefficientCombineRule::Max,
+                    };
+                    for (index, plan) in layout.walls.iter().enumerate() {
+                        let (axis, side) = plan.wall.axis_and_side();
+                        let mut outward = Vector3::zeros();
+                        outward[axis] = side;
+                        let inward = $rapier::na::Unit::new_unchecked(vector(&-outward));
+                        let wall = collider(layout, ColliderBuilder::halfspace(inward))
+                            .translation(vector(&(outward * plan.distance)))
+                            .restitution(layout.wall_restitution as $real)
+                            .restitution_combine_rule(rule)
+                            .collision_groups(InteractionGroups::new(
+                                Group::GROUP_2,
+                                Group::GROUP_1,
+                                InteractionTestMode::And,
+                            ))
+                            .user_data((layout.bodies.len() + index) as u128);
+                        self.world.insert_collider(wall, None);
+                    }
+                }
+
+                fn insert_springs(&mut self, layout: &Layout) {
+                    for plan in &layout.springs {
+                        let [a, b] = plan.ends.map(|end| self.bodies[end]);
+                        let spring = SpringJointBuilder::new(
+                            plan.rest_length as $real,
+                            plan.stiffness as $real,
+                            plan.damping as $real,
+                        )
+                        .contacts_enabled(true);
+                        self.world.insert_impulse_joint(a, b, spring);
+                    }
+                }
+
+                fn party(&self, collider: ColliderHandle) -> usize {
+                    self.world.colliders[collider].user_data as usize
+                }
+            }
+
+            impl World for $World {
+                const RANGE: Range = Range::$range;
+
+                fn build(layout: &Layout, states: &[BodyState]) -> Self {
+                    let world = PhysicsWorld {
+                        gravity: vector(&layout.gravity.into()),
+                        integration_parameters: integration_parameters(
+                            &layout.settings,
+                            layout.length_unit,
+                            layout.step,
+                        ),
+                        ..PhysicsWorld::default()
+                    };
+                    let mut this = Self {
+                        world,
+                        bodies: Vec::with_capacity(states.len()),
+                    };
+                    for (index, state) in states.iter().enumerate() {
+                        this.insert_ball(layout, index, state);
+                    }
+                    this.insert_walls(layout);
+                    this.insert_springs(layout);
+                    this
+                }
+
+                fn parameters(
+                    settings: &RapierSettings,
+                    length_unit: f64,
+                    step: f64,
+                ) -> Parameters {
+                    let p = integration_parameters(settings, length_unit, step);
+                    let cap = p.max_linear_velocity();
+                    Parameters {
+                        substeps: p.num_solver_iterations,
+                        prediction_distance: f64::from(p.prediction_distance()),
+                        recycle_distance: p
+                            .contact_recycling
+                            .then(|| f64::from(p.contact_recycle_distance())),
+                        ccd_passes: p.max_ccd_substeps,
+                        speed_cap: (cap < $real::MAX).then_some(f64::from(cap)),
+                        push_out_speed: f64::from(p.max_corrective_velocity()),
+                    }
+                }
+
+                #[inline]
+                fn step(&mut self) {
+                    self.world.step();
+                }
+
+                #[inline]
+                fn lost(&self) -> Option<usize> {
+                    let quarantine = self.world.quarantine();
+                    if quarantine.is_empty() {
+                        return None;
+                    }
+                    let bodies = quarantine.bodies().iter();
+                    let bodies = bodies.map(|body| self.world.bodies[*body].user_data as usize);
+                    let colliders = quarantine.colliders().iter().map(|lost| self.party(*lost));
+                    // A wall that is lost is lost to every ball: the last stands for all.
+                    let last = self.bodies.len().saturating_sub(1);
+                    Some(
+                        bodies
+                            .chain(colliders)
+                            .min()
+                            .map_or(last, |party| party.min(last)),
+                    )
+                }
+
+                #[inline]
+                fn pair_count(&self) -> u64 {
+                    self.world.physics_pipeline.counters.cd.ncontact_pairs as u64
+                }
+
+                #[inline]
+                fn state(&self, body: usize) -> BodyState {
+                    let body = &self.world.bodies[self.bodies[body]];
+                    BodyState {
+                        position: vector3(body.translation()),
+                        velocity: vector3(body.linvel()),
+                    }
+                }
+
+                #[inline]
+                fn velocity(&self, body: usize) -> Vector3 {
+                    vector3(self.world.bodies[self.bodies[body]].linvel())
+                }
+
+                fn stop(&mut self, body: usize) {
+                    self.world.bodies[self.bodies[body]].set_linvel(Vector::ZERO, false);
+                }
+
+                #[inline]
+                fn set_force(&mut self, body: usize, force: &Vector3) {
+                    let body = &mut self.world.bodies[self.bodies[body]];
+                    body.reset_forces(false);
+                    body.add_force(vector(force), false);
+                }
+
+                fn each_impulse(&self, mut visit: impl FnMut(usize, usize, f64)) {
+                    for pair in self.world.narrow_phase.contact_pairs() {
+                        let impulse = pair.total_impulse_magnitude();
+                        if impulse != 0.0 {
+                            let (a, b) = (self.party(pair.collider1), self.party(pair.collider2));
+                            visit(a, b, f64::from(impulse));
+                        }
+                    }
+                }
+            }
+        }
+    };
+}
+
+rapier_world!(single, PhysicsWorldSingle, rapier3d, f32, SINGLE);
+rapier_world!(double, PhysicsWorldDouble, rapier3d_f64, f64, DOUBLE);
