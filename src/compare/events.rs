@@ -61,16 +61,26 @@ impl<'a> Histories<'a> {
         self.next[body].front().map(|place| self.impacts[*place])
     }
 
-    /// The same impact, if it comes next for every body that takes part.
-    fn take_like(&mut self, event: &Event) -> Option<&'a Event> {
-        let mut places = participants(event).map(|body| self.next[body].front().copied());
-        let place = places.next()??;
-        let same = self.impacts[place].kind == event.kind && places.all(|p| p == Some(place));
-        if !same {
+    /// The same impact, if it comes next for every body that takes part; impacts of a body
+    /// within `window` of each other have no order.
+    fn take_like(&mut self, event: &Event, window: f64) -> Option<&'a Event> {
+        let (first, _) = event.kind.bodies();
+        let next = self.next_of(first)?.time;
+        let place = self.next[first]
+            .iter()
+            .copied()
+            .take_while(|place| self.impacts[*place].time <= next + window)
+            .find(|place| self.impacts[*place].kind == event.kind)?;
+        let time = self.impacts[place].time;
+        let is_next = |body| {
+            self.next_of(body)
+                .is_some_and(|head| time <= head.time + window)
+        };
+        if !participants(event).all(is_next) {
             return None;
         }
         for body in participants(event) {
-            self.next[body].pop_front();
+            self.next[body].retain(|other| *other != place);
         }
         Some(self.impacts[place])
     }
@@ -83,7 +93,8 @@ fn participants(event: &Event) -> impl Iterator<Item = usize> + use<> {
 
 /// Matches the impacts of two recordings of `scene`.
 ///
-/// After a disagreement the bodies that take part, and whoever meets them later, are no longer
+/// Impacts of one body within a step of each other have no order: a stepping engine handles
+/// them at the same instant. After a disagreement the bodies that take part, and whoever meets them later, are no longer
 /// compared. An impact within two steps of the end that only one recording has is no
 /// disagreement: the other may have it just past the end.
 #[must_use]
@@ -99,12 +110,13 @@ pub fn compare_events(scene: &Scene, a: &Recording, b: &Recording) -> EventAgree
     for event in &mine.impacts {
         if participants(event).any(|body| parted[body]) {
             participants(event).for_each(|body| parted[body] = true);
-        } else if let Some(twin) = other.take_like(event) {
+        } else if let Some(twin) = other.take_like(event, step) {
             agreement.matched += 1;
             let difference = (event.time - twin.time).abs();
             agreement.time_difference_max = agreement.time_difference_max.max(difference);
         } else {
-            let rivals = participants(event).filter_map(|body| other.next_of(body));
+            let next = participants(event).filter_map(|body| other.next_of(body));
+            let rivals = next.filter(|rival| rival.kind != event.kind);
             let rival = rivals.min_by(|x, y| x.time.total_cmp(&y.time)).copied();
             disagreements.push(Disagreement {
                 event_a: Some(**event),
@@ -165,6 +177,17 @@ mod tests {
         let agreement = compare_events(&scene, &a, &b);
         assert_eq!((agreement.matched, agreement.first_disagreement), (3, None));
         assert_eq!(agreement.time_difference_max, 0.25);
+    }
+
+    #[test]
+    fn impacts_within_one_step_have_no_order() {
+        let scene = scene();
+        let mut a = recording(&scene, &[(1.0, 0, 1), (1.0, 1, 2), (1.0, 2, 3)]);
+        let b = recording(&scene, &[(0.997, 2, 3), (0.998, 1, 2), (0.999, 0, 1)]);
+        assert_ne!(compare_events(&scene, &a, &b).first_disagreement, None);
+        a.step = Some(0.01);
+        let agreement = compare_events(&scene, &a, &b);
+        assert_eq!((agreement.matched, agreement.first_disagreement), (3, None));
     }
 
     #[test]

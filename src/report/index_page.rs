@@ -254,6 +254,30 @@ fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
     ))
 }
 
+/// The worst drift of energy of each engine where the model keeps it.
+fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
+    let worst = |spec: &EngineSpec| {
+        let drifts = summaries
+            .iter()
+            .filter(|summary| summary.model_conserves_energy);
+        let drifts = drifts.filter_map(|summary| {
+            let voice = summary
+                .voices
+                .iter()
+                .find(|voice| voice.voice == spec.name)?;
+            Some((voice.drift.energy_drift_max, &summary.scene))
+        });
+        let (drift, scene) = drifts.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(format!("`{}` {} in `{scene}`", spec.name, percent(drift)))
+    };
+    let worst: Vec<_> = engines.iter().filter_map(worst).collect();
+    let said = format!(
+        "Where the model keeps the energy, it drifts by up to: {}.",
+        worst.join(", ")
+    );
+    (!worst.is_empty()).then_some(said)
+}
+
 /// Who is nearest to truth how often, and each engine's middle error.
 fn nearest(with_truth: &[&Summary], engines: &[EngineSpec]) -> String {
     let errors = |name: &str| -> Vec<f64> {

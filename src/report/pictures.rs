@@ -46,8 +46,8 @@ pub(super) fn pictures(comparison: &SideBySide, voices: &[&Voice]) -> Result<Vec
     ])
 }
 
-/// The plane in which a scene is shown: from above, or from the side if it moves in y more
-/// than in z.
+/// The plane in which a scene is shown: from above, or from the side if it moves in y much
+/// more than in z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Plane {
     Above,
@@ -70,7 +70,7 @@ impl Plane {
             .effects
             .cushions
             .is_some_and(|c| c.half_height.is_none());
-        if !closed && spread(1) > spread(2) {
+        if !closed && spread(1) > 2.0 * spread(2) {
             Self::Side
         } else {
             Self::Above
