@@ -34,10 +34,7 @@ pub fn notes(scene: &Scene) -> Vec<String> {
     {
         notes.push("the slides' attraction is not softened".to_owned());
     }
-    if effects
-        .gravity
-        .is_some_and(|gravity| gravity.acceleration != [0.0; 3])
-    {
+    if effects.gravity.is_some() {
         notes.push("the slides' particle has a field for gravity but never uses it".to_owned());
     }
     notes

@@ -24,7 +24,7 @@ pub(super) fn phases(scene: &Scene, layout: &Layout, p: &Parameters) -> Vec<Phas
             format!("pairs closer than {reach}, {recycling}"),
         ));
     }
-    if layout.gravity != [0.0; 3] {
+    if layout.gravity.is_some() {
         phases.push(Phase::new("gravity", "Rapier's own, each substep"));
     }
     if !phases.iter().all(|phase| phase.name == "detection") {

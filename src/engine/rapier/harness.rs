@@ -64,8 +64,7 @@ impl Harness {
         for (body, force) in self.forces.iter().enumerate() {
             let kick = force * (1.0 / self.masses[body]) * self.step;
             let speed = length(&(self.states[body].velocity + kick));
-            // Not `>`: a speed that is not a number is out of range too.
-            if !(speed <= W::RANGE.largest) {
+            if !W::RANGE.holds(speed) {
                 out_of_range = out_of_range.or(Some(body));
             }
             world.set_force(body, force);

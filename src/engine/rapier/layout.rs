@@ -57,7 +57,7 @@ pub(super) struct Layout {
     pub wall_restitution: f64,
     pub wall_rule: Combine,
     /// Rapier's own gravity.
-    pub gravity: [f64; 3],
+    pub gravity: Option<[f64; 3]>,
     /// Rapier's own springs.
     pub springs: Vec<SpringPlan>,
 }
@@ -96,7 +96,7 @@ impl Layout {
             walls: effects.cushions.iter().flat_map(walls).collect(),
             wall_restitution,
             wall_rule: wall_rule(ball_restitution, wall_restitution),
-            gravity: gravity.map_or([0.0; 3], |gravity| gravity.acceleration),
+            gravity: gravity.map(|gravity| gravity.acceleration),
             springs: if native { joints(scene) } else { Vec::new() },
         };
         layout.check(scene)?;
@@ -127,7 +127,7 @@ impl Layout {
                 plan.distance,
             )?;
         }
-        for (axis, value) in self.gravity.iter().enumerate() {
+        for (axis, value) in self.gravity.iter().flatten().enumerate() {
             range.at_most(&format!("effects.gravity.acceleration[{axis}]"), *value)?;
         }
         for (index, plan) in self.springs.iter().enumerate() {
@@ -157,7 +157,7 @@ impl Layout {
 
     /// Whether the world does anything that divides by a sum of inverse masses.
     fn needs_inverse_mass(&self) -> bool {
-        self.has_colliders() || self.gravity != [0.0; 3] || !self.springs.is_empty()
+        self.has_colliders() || self.gravity.is_some() || !self.springs.is_empty()
     }
 }
 

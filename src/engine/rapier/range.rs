@@ -19,7 +19,7 @@ pub(super) struct Range {
     /// Below, a square is no longer a normal number.
     smallest: f64,
     /// Above, a square is infinite.
-    pub largest: f64,
+    largest: f64,
     /// Smallest mass whose inverse is finite.
     mass_min: f64,
     /// Spacing of numbers at 1.
@@ -52,10 +52,15 @@ impl Range {
         }
     }
 
+    /// Whether the square of a length or speed is finite; not for what is not a number.
+    pub fn holds(&self, length: f64) -> bool {
+        length <= self.largest
+    }
+
     /// Refuses a number whose square vanishes or overflows.
     pub fn positive(&self, field: &str, value: f64) -> Result<()> {
         if value < self.smallest {
-            return Err(self.cannot(field, value, format!("at least {:.1e}", self.smallest)));
+            return Err(self.cannot(field, value, &format!("at least {:.1e}", self.smallest)));
         }
         self.at_most(field, value)
     }
@@ -63,19 +68,19 @@ impl Range {
     /// Refuses a number whose square overflows.
     pub fn at_most(&self, field: &str, value: f64) -> Result<()> {
         // A quotient such as k/m may have overflowed to infinity: that is refused too.
-        if value.abs() <= self.largest {
+        if self.holds(value.abs()) {
             return Ok(());
         }
-        Err(self.cannot(field, value, format!("at most {:.1e}", self.largest)))
+        Err(self.cannot(field, value, &format!("at most {:.1e}", self.largest)))
     }
 
     /// Refuses a mass without a usable inverse.
     pub fn mass(&self, field: &str, value: f64, inverse_matters: bool) -> Result<()> {
         if value < self.mass_min {
-            return Err(self.cannot(field, value, format!("at least {:.1e}", self.mass_min)));
+            return Err(self.cannot(field, value, &format!("at least {:.1e}", self.mass_min)));
         }
         if inverse_matters && value >= MASS_MAX {
-            return Err(self.cannot(field, value, format!("below {MASS_MAX:.0e}")));
+            return Err(self.cannot(field, value, &format!("below {MASS_MAX:.0e}")));
         }
         self.at_most(field, value)
     }
@@ -86,10 +91,10 @@ impl Range {
             return Ok(());
         }
         let field = format!("h (h k + kd) of effects.springs[{index}]");
-        Err(self.cannot(&field, softness, format!("above {INVERTIBLE_MIN:e}")))
+        Err(self.cannot(&field, softness, &format!("above {INVERTIBLE_MIN:e}")))
     }
 
-    fn cannot(&self, field: &str, value: f64, bound: String) -> Error {
+    fn cannot(&self, field: &str, value: f64, bound: &str) -> Error {
         let (engine, other) = match self.precision {
             Precision::Single => (
                 "rapier3d (32-bit numbers)",

@@ -74,10 +74,7 @@ impl<W: World> RapierSimulation<W> {
     /// only pass on the speed there is, and carom's own forces are checked before they act.
     fn flung(&self) -> Option<usize> {
         let ends = self.layout.springs.iter().flat_map(|spring| spring.ends);
-        let too_fast = |body: &usize| {
-            let speed = length(&self.world.velocity(*body));
-            !(speed <= W::RANGE.largest)
-        };
+        let too_fast = |body: &usize| !W::RANGE.holds(length(&self.world.velocity(*body)));
         ends.filter(too_fast).min()
     }
 
@@ -106,7 +103,7 @@ impl<W: World> RapierSimulation<W> {
 /// velocity by cap/infinity: the body stands still, without a word.
 fn out_of_range<W: World>(states: &[BodyState]) -> Option<usize> {
     let fits = |state: &BodyState| {
-        length(&state.position) <= W::RANGE.largest && length(&state.velocity) <= W::RANGE.largest
+        W::RANGE.holds(length(&state.position)) && W::RANGE.holds(length(&state.velocity))
     };
     states.iter().position(|state| !fits(state))
 }

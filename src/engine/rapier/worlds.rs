@@ -158,7 +158,7 @@ macro_rules! rapier_world {
 
                 fn build(layout: &Layout, states: &[BodyState]) -> Self {
                     let world = PhysicsWorld {
-                        gravity: vector(&layout.gravity.into()),
+                        gravity: layout.gravity.map_or(Vector::ZERO, |g| vector(&g.into())),
                         integration_parameters: integration_parameters(
                             &layout.settings,
                             layout.length_unit,

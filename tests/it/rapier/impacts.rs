@@ -57,7 +57,7 @@ fn a_wall_keeps_its_own_restitution_bouncier_or_duller_than_the_balls() {
     ] {
         let mut scene = scene(0.16, vec![body("a", mass, 0.04, 0.0, speed)]);
         scene.effects.contact = balls.map(|restitution| Contact { restitution });
-        scene.effects.cushions = box_of(0.5, wall);
+        scene.effects.cushions = Some(box_of(0.5, wall));
         for name in RAPIER {
             let what = format!("{name} balls {balls:?} wall {wall}");
             let recording = run(&scene, name, 1e-3);
@@ -90,7 +90,7 @@ fn impulses_of_events_add_up_to_the_change_of_momentum() {
     scene.effects.gravity = Some(Gravity {
         acceleration: [0.0, -9.81, 0.0],
     });
-    scene.effects.cushions = box_of(5.0, 0.5);
+    scene.effects.cushions = Some(box_of(5.0, 0.5));
     scene.effects.cushions.as_mut().unwrap().half_height = Some(1.0);
     for name in RAPIER {
         let recording = run(&scene, name, 0.01);
@@ -127,7 +127,7 @@ fn without_a_contact_effect_balls_pass_each_other_and_still_bounce_off_walls() {
             body("b", 1.0, 0.1, 0.3, -1.0),
         ],
     );
-    scene.effects.cushions = box_of(1.0, 1.0);
+    scene.effects.cushions = Some(box_of(1.0, 1.0));
     for name in RAPIER {
         let recording = run(&scene, name, 0.01);
         let kinds: Vec<_> = recording

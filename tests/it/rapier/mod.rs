@@ -52,13 +52,13 @@ fn last(recording: &Recording) -> &[BodyState] {
     recording.sample(recording.sample_count() - 1)
 }
 
-fn box_of(half: f64, restitution: f64) -> Option<Cushions> {
-    Some(Cushions {
+fn box_of(half: f64, restitution: f64) -> Cushions {
+    Cushions {
         half_width: half,
         half_length: half,
         half_height: None,
         restitution,
-    })
+    }
 }
 
 fn spring(stiffness: f64, rest_length: f64, damping: f64) -> Vec<Spring> {

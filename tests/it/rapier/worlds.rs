@@ -103,7 +103,7 @@ fn watching_does_not_change_what_is_watched() {
 #[test]
 fn set_state_is_a_fresh_start() {
     let mut scene = head_on(LengthUnit::Metre, 5.0, 1.0, 0.9);
-    scene.effects.cushions = box_of(0.4, 0.8);
+    scene.effects.cushions = Some(box_of(0.4, 0.8));
     for name in RAPIER {
         let once = run(&scene, name, 1e-3);
         let mut simulation = prepare(&scene, &engine(name).unwrap(), 1e-3).unwrap();
