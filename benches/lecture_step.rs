@@ -1,6 +1,6 @@
 //! What the plan costs: a step of the `lecture` engine against the same arithmetic as one
 //! plain fused loop. `cargo bench --bench lecture_step`
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::cast_precision_loss)]
 
 #[path = "support/paired.rs"]
 mod paired;

@@ -82,7 +82,12 @@ impl Library {
         let Some(scene) = self.file(name, "scene.toml")? else {
             return Err(self.unknown(name));
         };
-        let scene = scene::parse(&scene.text()?, &scene.path)?;
+        let file = scene.path.clone();
+        let scene = scene::parse(&scene.text()?, &file)?;
+        if scene.name != name {
+            let scene = scene.name;
+            return Err(Error::CaseName { file, scene });
+        }
         let mut truth = None;
         if let Some(table) = self.file(name, "truth.csv")? {
             let mut recording =

@@ -122,6 +122,14 @@ pub enum Error {
         /// The nearest names, as a suggestion, or nothing.
         hint: String,
     },
+    /// A case whose scene has another name than its folder.
+    #[error("{file}: the scene is called `{scene}`; a case's scene has the name of its folder")]
+    CaseName {
+        /// The scene file.
+        file: String,
+        /// The name in it.
+        scene: String,
+    },
     /// A time step that cannot be taken.
     #[error("time step {dt} s: {message}")]
     Step {

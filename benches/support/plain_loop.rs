@@ -78,22 +78,21 @@ pub fn step(balls: &mut [Ball], table: &Table, dt: f64) {
     }
 }
 
-fn collide(a: &mut Ball, b: &mut Ball, normal: [f64; 3], distance: f64, e: f64) {
+fn collide(a: &mut Ball, b: &mut Ball, normal: [f64; 3], distance: f64, restitution: f64) {
     let penetration = a.radius + b.radius - distance;
     let (v1n, v2n) = (dot(a.velocity, normal), dot(b.velocity, normal));
     let vr = v1n - v2n;
     if vr < 0.0 {
-        let j = -vr * (e + 1.0) / (1.0 / a.mass + 1.0 / b.mass);
-        let (v1_new, v2_new) = (v1n + j / a.mass, v2n - j / b.mass);
-        for axis in 0..3 {
-            let n = normal[axis];
+        let impulse = -vr * (restitution + 1.0) / (1.0 / a.mass + 1.0 / b.mass);
+        let (v1_new, v2_new) = (v1n + impulse / a.mass, v2n - impulse / b.mass);
+        for (axis, n) in normal.into_iter().enumerate() {
             a.velocity[axis] = a.velocity[axis] - v1n * n + v1_new * n;
             b.velocity[axis] = b.velocity[axis] - v2n * n + v2_new * n;
         }
     }
-    let push_out = 0.5 * (1.0 + e) * penetration;
-    for axis in 0..3 {
-        a.position[axis] += push_out * normal[axis];
-        b.position[axis] -= push_out * normal[axis];
+    let push_out = 0.5 * (1.0 + restitution) * penetration;
+    for (axis, n) in normal.into_iter().enumerate() {
+        a.position[axis] += push_out * n;
+        b.position[axis] -= push_out * n;
     }
 }

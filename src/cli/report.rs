@@ -8,7 +8,7 @@ use super::args::{EngineArgs, LibraryArgs};
 use super::output::{progress, say, warn};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::report::{Folder, Pictured, write_comparison, write_index};
+use crate::report::{Folder, Place, write_comparison, write_index};
 use crate::study::side_by_side;
 
 #[derive(Debug, clap::Args)]
@@ -33,11 +33,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
         .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
     let dt = args.engines.dt;
     let library = args.library.library();
-    let names = if args.cases.is_empty() {
+    let mut names = if args.cases.is_empty() {
         library.names()?
     } else {
         args.cases.clone()
     };
+    names.sort();
+    names.dedup();
     let cases = names
         .iter()
         .map(|name| library.case(name))
@@ -49,7 +51,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
         .iter()
         .flat_map(|case| specs.iter().map(move |spec| (case, spec)))
     {
-        crate::engine::prepare(&case.scene, spec, dt)?;
+        match crate::engine::prepare(&case.scene, spec, dt) {
+            // A refusal is a result: the report says so where the case stands.
+            Ok(_) | Err(Error::EngineCannot { .. }) => {}
+            Err(error) => return Err(error),
+        }
     }
     let folder = Folder::open(&args.out)?;
     let bar = progress(cases.len(), args.quiet);
@@ -59,7 +65,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
             bar.set_message(case.scene.name.clone());
             let comparison = side_by_side(case, &specs, dt)?;
             let own = folder.folder(&case.scene.name)?;
-            let summary = write_comparison(&own, &comparison, Pictured { engines: 2 })?;
+            let summary = write_comparison(&own, &comparison, Place::InReport)?;
             bar.inc(1);
             Ok(summary)
         })

@@ -6,7 +6,7 @@ use super::args::{EngineArgs, LibraryArgs};
 use super::output::{say, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
-use crate::report::{Folder, Pictured, findings, write_comparison};
+use crate::report::{Folder, Place, findings, write_comparison};
 use crate::study::side_by_side;
 
 #[derive(Debug, clap::Args)]
@@ -43,7 +43,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     let folder = Folder::open(&out)?;
     let comparison = side_by_side(&case, &specs, args.engines.dt)?;
-    let summary = write_comparison(&folder, &comparison, Pictured { engines: 2 })?;
+    let summary = write_comparison(&folder, &comparison, Place::Alone)?;
     for voice in summary
         .voices
         .iter()

@@ -45,9 +45,16 @@ struct Histories<'a> {
     next: Vec<VecDeque<usize>>,
 }
 
+/// Impulses below this share of a recording's largest are rounding: two spheres that lie
+/// together after an impact with e = 0 may still approach by the last bit of their speeds.
+const ROUNDING: f64 = 1e-13;
+
 impl<'a> Histories<'a> {
     fn of(recording: &'a Recording, bodies: usize) -> Self {
-        let impacts: Vec<_> = recording.events.impacts().collect();
+        let impulses = recording.events.impacts().map(|event| event.impulse);
+        let least = ROUNDING * impulses.fold(0.0, f64::max);
+        let felt = |event: &&Event| event.impulse > least;
+        let impacts: Vec<_> = recording.events.impacts().filter(felt).collect();
         let mut next = vec![VecDeque::new(); bodies];
         for (place, event) in impacts.iter().enumerate() {
             for body in participants(event) {

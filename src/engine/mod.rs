@@ -98,14 +98,6 @@ pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     }
 }
 
-/// Version of the Rapier crates in this build, as they state it themselves.
-fn rapier_version() -> Option<&'static str> {
-    #[cfg(feature = "rapier")]
-    return Some(rapier::VERSION);
-    #[cfg(not(feature = "rapier"))]
-    None
-}
-
 #[cfg(not(feature = "rapier"))]
 fn not_built(spec: &EngineSpec) -> crate::error::Error {
     crate::error::Error::EngineNotBuilt {
@@ -114,10 +106,12 @@ fn not_built(spec: &EngineSpec) -> crate::error::Error {
     }
 }
 
-/// Versions of carom and of the Rapier crates in this build.
+/// Versions of carom and, in a build that has it, of Rapier, as the crates state them.
 #[must_use]
-pub fn versions() -> BTreeMap<&'static str, String> {
-    let carom = Some(("carom", env!("CARGO_PKG_VERSION").to_owned()));
-    let rapier = rapier_version().map(|version| ("rapier3d and rapier3d-f64", version.to_owned()));
-    carom.into_iter().chain(rapier).collect()
+pub fn versions() -> BTreeMap<&'static str, &'static str> {
+    BTreeMap::from([
+        ("carom", env!("CARGO_PKG_VERSION")),
+        #[cfg(feature = "rapier")]
+        ("rapier3d", rapier::VERSION),
+    ])
 }

@@ -118,7 +118,7 @@ pub struct Event {
     pub time: f64,
     /// What happened.
     pub kind: EventKind,
-    /// Size of the impulse: contact J, cushion m(1+e)|v_n|, rest m·speed.
+    /// Size of the impulse: contact `J`, cushion `m (1 + e) |v_n|`, rest `m speed`.
     pub impulse: f64,
 }
 
@@ -146,7 +146,19 @@ pub struct EventLog {
     events: Vec<Event>,
     counts: EventCounts,
     merged: u64,
-    interval: HashMap<EventKind, (u32, usize)>,
+    latest: HashMap<EventKind, Latest>,
+    interval: u64,
+}
+
+/// The latest event of a kind.
+#[derive(Debug, Clone, Copy, Default)]
+struct Latest {
+    /// Its place in the list.
+    place: usize,
+    /// The interval between two samples in which it happened.
+    interval: u64,
+    /// How many of its kind were kept in that interval.
+    kept: u32,
 }
 
 impl EventLog {
@@ -157,13 +169,16 @@ impl EventLog {
             EventKind::Cushion { .. } => self.counts.cushions += 1,
             EventKind::Rest { .. } => self.counts.rests += 1,
         }
-        let (seen, last) = self.interval.entry(event.kind).or_insert((0, 0));
-        if *seen == KEPT_PER_INTERVAL {
-            self.events[*last].impulse += event.impulse;
+        let latest = self.latest.entry(event.kind).or_default();
+        if latest.interval != self.interval {
+            (latest.interval, latest.kept) = (self.interval, 0);
+        }
+        if latest.kept == KEPT_PER_INTERVAL {
+            self.events[latest.place].impulse += event.impulse;
             self.merged += 1;
         } else {
-            *seen += 1;
-            *last = self.events.len();
+            latest.kept += 1;
+            latest.place = self.events.len();
             self.events.push(event);
         }
     }
@@ -171,25 +186,22 @@ impl EventLog {
     /// Adds impulse to the latest event of that kind: an impact that an engine spreads over
     /// several steps.
     pub fn prolong(&mut self, kind: EventKind, impulse: f64) {
-        let latest = self
-            .events
-            .iter_mut()
-            .rev()
-            .find(|event| event.kind == kind);
-        if let Some(event) = latest {
+        let latest = self.latest.get(&kind).map(|latest| latest.place);
+        if let Some(event) = latest.and_then(|place| self.events.get_mut(place)) {
             event.impulse += impulse;
         }
     }
 
     /// Tells that a sample has been reached.
     pub fn end_interval(&mut self) {
-        self.interval.clear();
+        self.interval += 1;
     }
 
     /// Forgets every event after that time, those with it.
     pub fn truncate_after(&mut self, time: f64) {
         self.events
             .retain(|event| event.time <= time && event.impulse.is_finite());
+        self.latest.clear();
     }
 
     /// The events kept, in order of time.

@@ -91,6 +91,7 @@ impl Recording {
     }
 
     /// All samples in order. Shape of each item: `[body]`.
+    #[must_use]
     pub fn samples(&self) -> impl ExactSizeIterator<Item = &[BodyState]> {
         self.states.chunks_exact(self.body_count)
     }

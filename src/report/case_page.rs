@@ -16,6 +16,7 @@ struct Page<'a> {
     unit: &'static str,
     size: String,
     findings: Vec<String>,
+    in_report: bool,
     pictures: &'a [&'a str],
     shown: String,
     voices: Vec<VoiceRow>,
@@ -59,7 +60,12 @@ struct Settings {
 }
 
 /// The page as Markdown.
-pub(super) fn case_page(summary: &Summary, pictures: &[&str], shown: &[&str]) -> Result<String> {
+pub(super) fn case_page(
+    summary: &Summary,
+    pictures: &[&str],
+    shown: &[&str],
+    in_report: bool,
+) -> Result<String> {
     let unit = summary.length_unit.symbol();
     let page = Page {
         summary,
@@ -69,6 +75,7 @@ pub(super) fn case_page(summary: &Summary, pictures: &[&str], shown: &[&str]) ->
             .iter()
             .map(|(who, what)| format!("**{who}** {what}"))
             .collect(),
+        in_report,
         pictures,
         shown: shown.join(", "),
         voices: summary
@@ -100,6 +107,12 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
             )
         })
         .collect();
+    found.extend(summary.refusals.iter().map(|refusal| {
+        (
+            refusal.engine.clone(),
+            format!("refused: {}.", refusal.reason),
+        )
+    }));
     for (place, a) in voices.iter().enumerate() {
         let pairs = voices[place + 1..]
             .iter()

@@ -27,7 +27,7 @@ struct Page<'a> {
     engines: Vec<EngineRow>,
     rows: Vec<Row>,
     truth_rows: Vec<TruthRow>,
-    versions: BTreeMap<&'static str, String>,
+    versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
     with_truth: usize,
@@ -57,7 +57,7 @@ struct Row {
     energy: [String; 2],
     momentum: [String; 2],
     disagreement: String,
-    outcome: String,
+    trouble: String,
 }
 
 #[derive(Serialize)]
@@ -69,7 +69,7 @@ struct TruthRow {
 /// All figures of a report, for programs.
 #[derive(Serialize)]
 struct Everything<'a> {
-    versions: BTreeMap<&'static str, String>,
+    versions: BTreeMap<&'static str, &'static str>,
     dt_s: f64,
     engines: &'a [EngineSpec],
     cases: &'a [Summary],
@@ -123,7 +123,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .collect(),
         rows: summaries
             .iter()
-            .filter_map(|summary| row(summary, first, second))
+            .map(|summary| row(summary, first, second))
             .collect(),
         truth_rows: summaries
             .iter()
@@ -197,6 +197,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
     if let [first, second, ..] = engines {
         sentences.extend(parting(summaries, &first.name, &second.name));
     }
+    sentences.extend(energy_drifts(summaries, engines));
     let with_truth: Vec<_> = summaries
         .iter()
         .filter(|summary| truth(summary).is_some())
@@ -215,9 +216,22 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
             )
         })
         .collect();
-    if unfinished.is_empty() {
+    let refused: Vec<_> = summaries
+        .iter()
+        .flat_map(|summary| {
+            summary
+                .refusals
+                .iter()
+                .map(move |refusal| (summary, refusal))
+        })
+        .map(|(summary, refusal)| format!("{} refused `{}`", refusal.engine, summary.scene))
+        .collect();
+    if !refused.is_empty() {
+        sentences.push(format!("{}.", refused.join("; ")));
+    } else if unfinished.is_empty() {
         sentences.push("Every engine finished every case.".into());
-    } else {
+    }
+    if !unfinished.is_empty() {
         sentences.push(format!("Not finished: {}.", unfinished.join("; ")));
     }
     sentences
@@ -310,11 +324,11 @@ fn nearest(with_truth: &[&Summary], engines: &[EngineSpec]) -> String {
     )
 }
 
-fn row(summary: &Summary, first: &str, second: &str) -> Option<Row> {
+fn row(summary: &Summary, first: &str, second: &str) -> Row {
     let unit = summary.length_unit.symbol();
-    let pair = summary.pair(first, second)?;
-    let of = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
-    let both = [of(first)?, of(second)?];
+    let voice = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
+    let both = [first, second].map(voice);
+    let nothing = || "–".to_owned();
     let energy = |voice: &VoiceSummary| {
         if summary.model_conserves_energy {
             percent(voice.drift.energy_drift_max)
@@ -326,31 +340,37 @@ fn row(summary: &Summary, first: &str, second: &str) -> Option<Row> {
         if summary.model_conserves_momentum {
             percent(voice.drift.momentum_drift_max)
         } else {
-            "–".to_owned()
+            nothing()
         }
     };
-    let unfinished = both.iter().find(|voice| !voice.outcome.is_finished());
-    Some(Row {
+    let pair = summary.pair(first, second);
+    let unfinished = both
+        .iter()
+        .flatten()
+        .filter(|voice| !voice.outcome.is_finished());
+    let troubles = unfinished.map(|voice| format!("{}: {}", voice.voice, voice.outcome.word()));
+    let refused = summary
+        .refusals
+        .iter()
+        .map(|refusal| format!("{}: refused", refusal.engine));
+    Row {
         scene: summary.scene.clone(),
         title: summary.title.clone(),
-        divergence: with_unit(pair.position_divergence_max, unit),
-        relative: percent(pair.position_divergence_relative),
-        energy: both.map(energy),
-        momentum: both.map(momentum),
-        disagreement: pair.first_disagreement.as_ref().map_or_else(
-            || {
-                if pair.impacts_matched > 0 {
-                    "none".to_owned()
-                } else {
-                    "no impacts".to_owned()
-                }
-            },
-            |first| first.text.clone(),
-        ),
-        outcome: unfinished.map_or(String::new(), |voice| {
-            format!("{}: {}", voice.voice, voice.outcome.word())
-        }),
-    })
+        divergence: pair.map_or_else(nothing, |p| with_unit(p.position_divergence_max, unit)),
+        relative: pair.map_or_else(nothing, |p| percent(p.position_divergence_relative)),
+        energy: both.map(|voice| voice.map_or_else(nothing, energy)),
+        momentum: both.map(|voice| voice.map_or_else(nothing, momentum)),
+        disagreement: pair.map_or_else(nothing, disagreement),
+        trouble: troubles.chain(refused).collect::<Vec<_>>().join(", "),
+    }
+}
+
+fn disagreement(pair: &PairSummary) -> String {
+    match &pair.first_disagreement {
+        Some(first) => first.text.clone(),
+        None if pair.impacts_matched > 0 => "none".to_owned(),
+        None => "no impacts".to_owned(),
+    }
 }
 
 fn truth_row(summary: &Summary, engines: &[EngineSpec]) -> Option<TruthRow> {

@@ -16,4 +16,4 @@ pub use case_page::findings;
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};
 pub use index_page::{index_page, write_index};
-pub use output::{Pictured, write_comparison};
+pub use output::{Place, write_comparison};

@@ -9,37 +9,37 @@ use crate::error::Result;
 use crate::recording::{write_events, write_trajectory};
 use crate::study::{SideBySide, Summary, Voice};
 
-/// Which voices a comparison's pictures show: two or three, or they show nothing clearly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pictured {
-    /// How many engines at most, in the order in which they were asked for.
-    pub engines: usize,
+/// Engines that a picture shows, in the order in which they were asked for; with truth that
+/// makes three voices, and more would show nothing clearly.
+const PICTURED: usize = 2;
+
+/// The voices of the pictures: the engines first named, then truth.
+fn pictured(comparison: &SideBySide) -> Vec<&Voice> {
+    let truth = comparison
+        .voices
+        .iter()
+        .filter(|voice| voice.spec.is_none());
+    let engines = comparison
+        .voices
+        .iter()
+        .filter(|voice| voice.spec.is_some());
+    engines.take(PICTURED).chain(truth).collect()
 }
 
-impl Pictured {
-    /// The engines first named, then truth.
-    fn voices(self, comparison: &SideBySide) -> Vec<&Voice> {
-        let truth = comparison
-            .voices
-            .iter()
-            .filter(|voice| voice.spec.is_none());
-        let engines = comparison
-            .voices
-            .iter()
-            .filter(|voice| voice.spec.is_some());
-        engines.take(self.engines).chain(truth).take(3).collect()
-    }
+/// Where a comparison's page stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// In a folder of its own.
+    Alone,
+    /// In a report, with the index one folder up.
+    InReport,
 }
 
 /// Writes tables, pictures, page and summary of a comparison; gives the summary.
 ///
 /// # Errors
 /// A file that cannot be written, with its name; each file is whole or not there.
-pub fn write_comparison(
-    folder: &Folder,
-    comparison: &SideBySide,
-    pictured: Pictured,
-) -> Result<Summary> {
+pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) -> Result<Summary> {
     let scene = &comparison.scene;
     let summary = Summary::of(comparison);
     for voice in &comparison.voices {
@@ -53,7 +53,7 @@ pub fn write_comparison(
     }
     folder.write("metrics.csv", |out| write_metrics(comparison, out))?;
     folder.write("divergence.csv", |out| write_divergence(comparison, out))?;
-    let voices = pictured.voices(comparison);
+    let voices = pictured(comparison);
     #[cfg(feature = "plots")]
     let pictures = super::pictures::pictures(comparison, &voices)?;
     #[cfg(not(feature = "plots"))]
@@ -63,7 +63,7 @@ pub fn write_comparison(
     }
     let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
     let shown: Vec<_> = voices.iter().map(|voice| voice.name()).collect();
-    let page = case_page(&summary, &names, &shown)?;
+    let page = case_page(&summary, &names, &shown, place == Place::InReport)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
     folder.write("summary.json", |out| write_json(out, &summary))?;
     Ok(summary)

@@ -4,6 +4,6 @@ mod side_by_side;
 mod summary;
 mod tracks;
 
-pub use side_by_side::{SideBySide, Voice, side_by_side};
+pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};
 pub use tracks::{Track, track};

@@ -1,13 +1,14 @@
 //! One case on several engines, on one time grid, compared with each other and with truth.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::case::Case;
 use crate::compare::{
     Divergence, Drift, EventAgreement, Metrics, compare_events, metrics, scene_size,
 };
 use crate::engine::{EngineSpec, record};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::scene::Scene;
 
@@ -43,6 +44,15 @@ impl Voice {
     }
 }
 
+/// An engine that cannot do a scene, and why.
+#[derive(Debug, Clone, Serialize)]
+pub struct Refusal {
+    /// The engine.
+    pub engine: String,
+    /// What it cannot do, and the remedy.
+    pub reason: String,
+}
+
 /// A case on several engines, compared.
 #[derive(Debug, Clone)]
 pub struct SideBySide {
@@ -54,6 +64,8 @@ pub struct SideBySide {
     pub dt: f64,
     /// The engines in the order asked for, then truth.
     pub voices: Vec<Voice>,
+    /// The engines that cannot do the scene.
+    pub refusals: Vec<Refusal>,
     /// Every pair of voices, in order.
     pub pairs: Vec<(Divergence, EventAgreement)>,
     /// Diagonal of the box of all positions, the yardstick of divergences.
@@ -79,19 +91,24 @@ impl SideBySide {
 /// Runs every engine on a case and compares all voices, pair by pair.
 ///
 /// # Errors
-/// As [`record`]; an engine that blows up is a result, not an error.
+/// As [`record`], but an engine that refuses the scene or blows up is a result, not an error.
 pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBySide> {
     let scene = &case.scene;
-    let mut voices = specs
+    let recorded: Vec<_> = specs
         .par_iter()
-        .map(|spec| {
-            Ok(Voice::new(
-                scene,
-                Some(spec.clone()),
-                record(scene, spec, dt)?,
-            ))
-        })
-        .collect::<Result<Vec<_>>>()?;
+        .map(|spec| (spec, record(scene, spec, dt)))
+        .collect();
+    let (mut voices, mut refusals) = (Vec::new(), Vec::new());
+    for (spec, recording) in recorded {
+        match recording {
+            Ok(recording) => voices.push(Voice::new(scene, Some(spec.clone()), recording)),
+            Err(refusal @ Error::EngineCannot { .. }) => refusals.push(Refusal {
+                engine: spec.name.clone(),
+                reason: refusal.to_string(),
+            }),
+            Err(error) => return Err(error),
+        }
+    }
     voices.extend(
         case.truth
             .iter()
@@ -115,6 +132,7 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
         dt,
         size: scene_size(&recordings),
         voices,
+        refusals,
         pairs,
     })
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{SideBySide, Voice};
+use super::{Refusal, SideBySide, Voice};
 use crate::compare::{Disagreement, Divergence, Drift, EventAgreement};
 use crate::engine::{EngineSpec, notes};
 use crate::recording::{Event, EventCounts, EventKind, Outcome, Work};
@@ -45,6 +45,8 @@ pub struct Summary {
     pub truth_origin: Option<String>,
     /// Each engine, then truth.
     pub voices: Vec<VoiceSummary>,
+    /// The engines that cannot do the scene.
+    pub refusals: Vec<Refusal>,
     /// Each pair of voices.
     pub pairs: Vec<PairSummary>,
 }
@@ -145,6 +147,7 @@ impl Summary {
                 .iter()
                 .map(|voice| VoiceSummary::of(scene, voice))
                 .collect(),
+            refusals: comparison.refusals.clone(),
             pairs: comparison
                 .pairs
                 .iter()

@@ -113,9 +113,11 @@ fn spheres_are_apart(fault: Fault) -> bool {
     (after[0].x - after[1].x).norm() >= after[0].r + after[1].r
 }
 
+type Check = fn(Fault) -> bool;
+
 #[test]
 fn each_fault_fails_its_check_and_a_sound_solver_none() {
-    let checks: [(&str, fn(Fault) -> bool); 4] = [
+    let checks: [(&str, Check); 4] = [
         ("restitution", restitution_holds),
         ("momentum", momentum_holds),
         ("angular momentum", angular_momentum_holds),

@@ -26,7 +26,8 @@ const CONFINED: [(&str, &str); 5] = [
     ("clap", "src/cli"),
 ];
 
-fn sources() -> Vec<(PathBuf, String)> {
+/// Every source file with its text, in order of its path.
+pub fn sources() -> Vec<(PathBuf, String)> {
     fn walk(folder: &Path, found: &mut Vec<(PathBuf, String)>) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -43,6 +44,7 @@ fn sources() -> Vec<(PathBuf, String)> {
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
         &mut found,
     );
+    found.sort();
     found
 }
 

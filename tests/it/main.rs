@@ -6,6 +6,7 @@ mod cases;
 mod closed_forms;
 mod command_line;
 mod controls;
+mod departures;
 #[cfg(feature = "rapier")]
 mod geometry;
 mod hostile;

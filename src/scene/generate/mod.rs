@@ -24,8 +24,8 @@ impl Random {
     /// Uniform in 0..1, with all 53 bits of a double.
     fn unit(&mut self) -> f64 {
         #[allow(clippy::cast_precision_loss, reason = "53 bits fit")]
-        let bits = (self.0.next_u64() >> 11) as f64;
-        bits / (1_u64 << 53) as f64
+        let share = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        share
     }
 
     /// Uniform in `low..high`.

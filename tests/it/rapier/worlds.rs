@@ -1,6 +1,6 @@
 //! Forces, joints, plans, and the life of a world.
 
-use carom::engine::{engine, notes, plan, prepare, rapier_version};
+use carom::engine::{engine, notes, plan, prepare, versions};
 use carom::scene::{Attraction, Contact, Drag, Gravity, LengthUnit, Scene};
 
 use super::{RAPIER, body, box_of, head_on, last, run, scene, spring};
@@ -155,7 +155,7 @@ fn the_plan_has_a_phase_for_what_the_scene_declares_and_nothing_else() {
 
 #[test]
 fn the_version_in_reports_is_the_one_that_cargo_locked() {
-    let version = rapier_version().unwrap();
+    let version = versions()["rapier3d"];
     assert_eq!(rapier3d::VERSION, rapier3d_f64::VERSION);
     let lock = include_str!("../../../Cargo.lock");
     for name in ["rapier3d", "rapier3d-f64"] {
