@@ -46,8 +46,8 @@ pub(super) fn pictures(comparison: &SideBySide, voices: &[&Voice]) -> Result<Vec
     ])
 }
 
-/// The plane in which a scene is shown: from above, or from the side if it moves in y much
-/// more than in z.
+/// The plane in which a scene is shown: from above, or from the side if things fall along y or
+/// move in y much more than in z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Plane {
     Above,
@@ -65,12 +65,13 @@ impl Plane {
                 });
             high - low
         };
-        let closed = comparison
-            .scene
-            .effects
-            .cushions
-            .is_some_and(|c| c.half_height.is_none());
-        if !closed && spread(1) > 2.0 * spread(2) {
+        let effects = &comparison.scene.effects;
+        let table = effects.cushions.is_some_and(|c| c.half_height.is_none());
+        let falls = effects.gravity.is_some_and(|gravity| {
+            let [x, y, z] = gravity.acceleration.map(f64::abs);
+            y > x.max(z)
+        });
+        if falls || !table && spread(1) > 2.0 * spread(2) {
             Self::Side
         } else {
             Self::Above
@@ -333,17 +334,24 @@ fn momentum_figure(comparison: &SideBySide, voices: &[&Voice], plane: Plane) -> 
     for panel in &mut panels {
         panel.least_span = FLAT;
     }
-    let subtitle = if scene.effects.conserve_momentum() {
-        "momentum and angular momentum: the model keeps them, so any change is an error"
-    } else {
-        "momentum and angular momentum: the scene's walls, drag or gravity change them"
-    };
     CurvesFigure {
         title: scene.heading().to_owned(),
-        subtitle: subtitle.to_owned(),
+        subtitle: momentum_words(scene).to_owned(),
         x_label: "time [s]".into(),
         panels,
         marks: marks(voices),
+    }
+}
+
+fn momentum_words(scene: &Scene) -> &'static str {
+    let effects = &scene.effects;
+    match (
+        effects.conserve_momentum(),
+        effects.conserve_angular_momentum(),
+    ) {
+        (true, true) => "momentum p and angular momentum L: the model keeps both",
+        (true, false) => "the model keeps the momentum p; the springs' dampers change L",
+        (false, _) => "momentum p and angular momentum L: walls, drag or gravity change them",
     }
 }
 

@@ -150,4 +150,11 @@ impl Effects {
                 .gravity
                 .is_none_or(|gravity| gravity.acceleration == [0.0; 3])
     }
+
+    /// Whether the model keeps the total angular momentum: what keeps the momentum, and no
+    /// damper, whose force on the full relative velocity does not point along its spring.
+    #[must_use]
+    pub fn conserve_angular_momentum(&self) -> bool {
+        self.conserve_momentum() && self.springs.iter().all(|spring| spring.damping == 0.0)
+    }
 }
