@@ -40,7 +40,7 @@ fn main() {
 
 fn compare(name: &str, scene: &Scene) {
     let grid = StepGrid::new(scene, DT).expect("a step");
-    let samples = (2.0 / scene.sample_every) as usize;
+    let samples = scene.sample_count().min(32);
     let steps = samples as u64 * grid.steps_per_sample;
     let spec = engine("rapier").expect("an engine");
     let (mut last_a, mut last_b) = (Vector::ZERO, Vector::ZERO);

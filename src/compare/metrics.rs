@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::physics::{
-    BodyState, Vector3, angular_momentum, attraction_energy, centre_of_mass, gravity_energy,
-    kinetic_energy, momentum, spring_energy,
+    BodyState, SpringDamper, Vector3, angular_momentum, attraction_energy, centre_of_mass,
+    gravity_energy, kinetic_energy, momentum,
 };
 use crate::recording::Recording;
 use crate::scene::Scene;
@@ -62,7 +62,7 @@ impl Metrics {
 #[must_use]
 pub fn metrics(scene: &Scene, recording: &Recording) -> Vec<Metrics> {
     let masses: Vec<f64> = scene.bodies.iter().map(|body| body.mass).collect();
-    let springs = scene.spring_ends();
+    let springs = SpringDamper::all(scene);
     let of_sample = |(sample, states): (usize, &[BodyState])| Metrics {
         time: scene.sample_time(sample),
         kinetic_energy: masses
@@ -71,16 +71,10 @@ pub fn metrics(scene: &Scene, recording: &Recording) -> Vec<Metrics> {
             .map(|(m, s)| kinetic_energy(*m, &s.velocity))
             .sum(),
         attraction_energy: total_attraction(scene, &masses, states),
-        spring_energy: scene
-            .effects
-            .springs
+        spring_energy: springs
             .iter()
-            .zip(&springs)
-            .map(|(spring, ends)| {
-                let ends = ends.map(|end| &states[end].position);
-                spring_energy(spring.stiffness, spring.rest_length, ends)
-            })
-            .sum(),
+            .map(|spring| spring.energy(spring.ends.map(|end| &states[end].position)))
+            .fold(0.0, |sum, energy| sum + energy),
         gravity_energy: total_gravity(scene, &masses, states),
         momentum: momentum(&masses, states),
         angular_momentum: angular_momentum(&masses, states),

@@ -7,12 +7,14 @@ mod energy;
 mod force;
 mod impulse;
 mod momentum;
+mod spring;
 mod state;
 
 pub use energy::{attraction_energy, gravity_energy, kinetic_energy, spring_energy};
 pub use force::{attraction, spring_damper};
 pub use impulse::{contact_impulse, cushion_impulse};
 pub use momentum::{angular_momentum, centre_of_mass, momentum};
+pub use spring::SpringDamper;
 pub use state::{BodyState, is_finite};
 
 /// Three components, in the order x, y, z.

@@ -2,8 +2,9 @@
 
 use std::io::{Read, Write};
 
+use super::table::Table;
 use super::{Event, EventKind, EventLog, Wall};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Scene;
 
 const HEADER: [&str; 5] = ["time", "kind", "a", "b", "impulse"];
@@ -37,50 +38,15 @@ pub fn write_events(
 /// # Errors
 /// [`Error::Table`] with the line, for a wrong header, number, kind or name.
 pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventLog> {
-    let complaint = |line: u64, message: String| Error::Table {
-        file: file.to_owned(),
-        line,
-        message,
-    };
-    let unreadable = |wrong: csv::Error| {
-        complaint(
-            wrong.position().map_or(1, csv::Position::line),
-            wrong.to_string(),
-        )
-    };
-    let mut table = csv::Reader::from_reader(input);
-    if table.headers().map_err(unreadable)? != HEADER.as_slice() {
-        return Err(complaint(
-            1,
-            format!("the header must be `{}`", HEADER.join(",")),
-        ));
-    }
+    let mut table = Table::open(input, &HEADER, file)?;
     let mut events = Vec::new();
-    for row in table.into_records() {
-        let row = row.map_err(unreadable)?;
-        let line = row.position().map_or(0, csv::Position::line);
-        let number = |column: usize| {
-            row[column]
-                .trim()
-                .parse()
-                .ok()
-                .filter(|x: &f64| x.is_finite())
-                .ok_or_else(|| {
-                    complaint(
-                        line,
-                        format!(
-                            "`{}` is `{}`: not a finite number",
-                            HEADER[column], &row[column]
-                        ),
-                    )
-                })
-        };
+    while table.advance()? {
         let body = |column: usize| {
-            scene.body_index(&row[column]).ok_or_else(|| {
-                complaint(line, format!("`{}` is no body of the scene", &row[column]))
-            })
+            let name = table.text(column);
+            let index = scene.body_index(name);
+            index.ok_or_else(|| table.wrong(format!("`{name}` is no body of the scene")))
         };
-        let kind = match &row[1] {
+        let kind = match table.text(1) {
             "contact" => {
                 let (a, b) = (body(2)?, body(3)?);
                 EventKind::Contact {
@@ -89,8 +55,9 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
                 }
             }
             "cushion" => {
-                let wall = Wall::from_name(&row[3]).ok_or_else(|| {
-                    complaint(line, format!("`{}` is no wall: -x +x -z +z -y +y", &row[3]))
+                let name = table.text(3);
+                let wall = Wall::from_name(name).ok_or_else(|| {
+                    table.wrong(format!("`{name}` is no wall: -x +x -z +z -y +y"))
                 })?;
                 EventKind::Cushion {
                     body: body(2)?,
@@ -100,13 +67,14 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
             "rest" => EventKind::Rest { body: body(2)? },
             other => {
                 let message = format!("kind `{other}`: there are contact, cushion and rest");
-                return Err(complaint(line, message));
+                return Err(table.wrong(message));
             }
         };
+        let (time, impulse) = (table.number(0)?, table.number(4)?);
         events.push(Event {
-            time: number(0)?,
+            time,
             kind,
-            impulse: number(4)?,
+            impulse,
         });
     }
     Ok(events.into_iter().collect())

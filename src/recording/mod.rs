@@ -4,6 +4,7 @@ mod event;
 mod events_csv;
 mod number;
 mod outcome;
+mod table;
 mod trajectory_csv;
 
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};

@@ -3,7 +3,8 @@
 use std::io::{Read, Write};
 
 use super::Recording;
-use crate::error::{Error, Result};
+use super::table::Table;
+use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
 use crate::scene::Scene;
 
@@ -45,65 +46,30 @@ pub fn read_trajectory(
     input: impl Read,
     file: &str,
 ) -> Result<Recording> {
-    let complaint = |line: u64, message: String| Error::Table {
-        file: file.to_owned(),
-        line,
-        message,
-    };
-    let unreadable = |wrong: csv::Error| {
-        complaint(
-            wrong.position().map_or(1, csv::Position::line),
-            wrong.to_string(),
-        )
-    };
-    let mut table = csv::Reader::from_reader(input);
-    if table.headers().map_err(unreadable)? != HEADER.as_slice() {
-        return Err(complaint(
-            1,
-            format!("the header must be `{}`", HEADER.join(",")),
-        ));
-    }
+    let mut table = Table::open(input, &HEADER, file)?;
     let mut recording = Recording::empty(voice, scene.bodies.len());
     let mut states = Vec::with_capacity(scene.bodies.len());
-    let mut row = csv::StringRecord::new();
-    while table.read_record(&mut row).map_err(unreadable)? {
-        let line = row.position().map_or(0, csv::Position::line);
+    while table.advance()? {
         let sample = recording.sample_count();
-        let (body, expected) = (&scene.bodies[states.len()], scene.sample_time(sample));
-        if row[1] != body.name {
-            let message = format!(
-                "body `{}` where `{}` of t = {expected} s is due; a row a body, in the scene's order",
-                &row[1], body.name
-            );
-            return Err(complaint(line, message));
+        let (body, due) = (&scene.bodies[states.len()], scene.sample_time(sample));
+        if table.text(1) != body.name {
+            return Err(table.wrong(format!(
+                "body `{}` where `{}` of t = {due} s is due; a row a body, in the scene's order",
+                table.text(1),
+                body.name
+            )));
         }
-        let mut numbers = [0.0; 8];
-        for (column, number) in numbers
-            .iter_mut()
-            .enumerate()
-            .filter(|(column, _)| *column != 1)
-        {
-            let text = &row[column];
-            *number = text
-                .trim()
-                .parse()
-                .ok()
-                .filter(|x: &f64| x.is_finite())
-                .ok_or_else(|| {
-                    complaint(
-                        line,
-                        format!("`{}` is `{text}`: not a finite number", HEADER[column]),
-                    )
-                })?;
+        let time = table.number(0)?;
+        let off = (time - due).abs() > TIME_TOLERANCE * scene.duration;
+        if off || sample > scene.sample_count() {
+            let message = format!("time {time} s where {due} s is due: off the scene's grid");
+            return Err(table.wrong(message));
         }
-        let [time, _, x, y, z, vx, vy, vz] = numbers;
-        if (time - expected).abs() > TIME_TOLERANCE * scene.duration
-            || sample > scene.sample_count()
-        {
-            let message = format!("time {time} s where {expected} s is due: off the scene's grid");
-            return Err(complaint(line, message));
-        }
-        let (position, velocity) = (Vector3::new(x, y, z), Vector3::new(vx, vy, vz));
+        let vector = |first: usize| -> Result<Vector3> {
+            let [x, y, z] = [0, 1, 2].map(|axis| table.number(first + axis));
+            Ok(Vector3::new(x?, y?, z?))
+        };
+        let (position, velocity) = (vector(2)?, vector(5)?);
         states.push(BodyState { position, velocity });
         if states.len() == scene.bodies.len() {
             recording.push(&states);
@@ -112,13 +78,62 @@ pub fn read_trajectory(
     }
     let complete = states.is_empty() && recording.sample_count() == scene.sample_count() + 1;
     if !complete {
-        let line = row.position().map_or(1, csv::Position::line);
-        let message = format!(
+        return Err(table.wrong(format!(
             "ends after {} of {} samples; the file is not complete",
             recording.sample_count(),
             scene.sample_count() + 1
-        );
-        return Err(complaint(line, message));
+        )));
     }
     Ok(recording)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene() -> Scene {
+        let text = "name='x'\nduration=1\nsample_every=1\n[[bodies]]\nname='a'\nmass=1\n\
+            radius=1\nposition=[0,0,0]\nvelocity=[0,0,0]\n";
+        crate::scene::parse(text, "x").unwrap()
+    }
+
+    fn read(rows: &str) -> Result<Recording> {
+        let text = format!("time,body,x,y,z,vx,vy,vz\n{rows}");
+        read_trajectory("x", &scene(), text.as_bytes(), "t.csv")
+    }
+
+    #[test]
+    fn what_is_written_is_read_back_bit_for_bit() {
+        let awkward = "0,a,0.1,-5e-324,1e300,1,2,3\n1,a,0.30000000000000004,0,0,0,0,-7.5\n";
+        let recording = read(awkward).unwrap();
+        let mut table = Vec::new();
+        write_trajectory(&recording, &scene(), &mut table).unwrap();
+        let again = read_trajectory("x", &scene(), table.as_slice(), "t.csv").unwrap();
+        assert!(recording.samples().eq(again.samples()));
+    }
+
+    #[test]
+    fn each_wrong_table_is_told_with_its_line() {
+        let start = "0,a,0,0,0,0,0,0\n";
+        let table = [
+            ("0,b,0,0,0,0,0,0\n", "line 2: body `b` where `a`"),
+            ("0,a,0,0,nan,0,0,0\n", "line 2: `z` is `nan`"),
+            ("0.5,a,0,0,0,0,0,0\n", "line 2: time 0.5 s where 0 s is due"),
+            ("0,a,0,0\n", "line 2"),
+            (start, "ends after 1 of 2 samples"),
+            (
+                &format!("{start}{start}"),
+                "line 3: time 0 s where 1 s is due",
+            ),
+        ];
+        for (rows, said) in table {
+            let complaint = read(rows).unwrap_err().to_string();
+            assert!(complaint.contains(said), "{complaint}");
+        }
+        let header = read_trajectory("x", &scene(), b"a,b\n".as_slice(), "t.csv").unwrap_err();
+        assert!(
+            header.to_string().contains("the header must be"),
+            "{header}"
+        );
+    }
 }

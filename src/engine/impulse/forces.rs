@@ -2,18 +2,9 @@
 
 use super::Particle;
 use super::observer::Observer;
-use crate::physics::{Vector3, attraction, length, spring_damper};
+use crate::physics::{SpringDamper, Vector3, attraction, length};
 use crate::recording::EventKind;
 use crate::scene::{Attraction, Drag, Rest};
-
-/// A spring between two particles, its ends as indices.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SpringBetween {
-    pub ends: [usize; 2],
-    pub stiffness: f64,
-    pub rest_length: f64,
-    pub damping: f64,
-}
 
 /// Slides' `resetForce()`.
 #[inline]
@@ -54,16 +45,10 @@ pub(super) fn drag(particles: &mut [Particle], effect: Drag) {
 
 /// Slides' final model of the spring-damper, spring by spring.
 #[inline]
-pub(super) fn springs(particles: &mut [Particle], springs: &[SpringBetween]) {
+pub(super) fn springs(particles: &mut [Particle], springs: &[SpringDamper]) {
     for spring in springs {
         let [a, b] = spring.ends.map(|end| &particles[end]);
-        let force = spring_damper(
-            spring.stiffness,
-            spring.rest_length,
-            spring.damping,
-            [&a.position, &b.position],
-            [&a.velocity, &b.velocity],
-        );
+        let force = spring.force([&a.position, &b.position], [&a.velocity, &b.velocity]);
         particles[spring.ends[0]].force += force;
         particles[spring.ends[1]].force += -force;
     }

@@ -1,10 +1,9 @@
 //! The step: phases in the slides' order, each there only if the scene calls for it.
 
-use super::forces::SpringBetween;
 use super::observer::{Nobody, Observer, Scribe};
 use super::{Particle, contacts, cushions, forces, particles};
 use crate::engine::{Phase, Simulation, StepGrid};
-use crate::physics::{BodyState, Vector3};
+use crate::physics::{BodyState, SpringDamper, Vector3};
 use crate::recording::{EventLog, Outcome, Work};
 use crate::scene::{Attraction, Contact, Cushions, Drag, Rest, Scene};
 
@@ -26,7 +25,7 @@ pub struct ImpulseSimulation {
 struct Phases {
     attraction: Option<Attraction>,
     drag: Option<Drag>,
-    springs: Vec<SpringBetween>,
+    springs: Vec<SpringDamper>,
     gravity: Option<Vector3>,
     rest: Option<Rest>,
     cushions: Option<Cushions>,
@@ -38,17 +37,7 @@ struct Phases {
 impl Phases {
     fn of(scene: &Scene) -> Self {
         let effects = &scene.effects;
-        let springs: Vec<_> = effects
-            .springs
-            .iter()
-            .zip(scene.spring_ends())
-            .map(|(spring, ends)| SpringBetween {
-                ends,
-                stiffness: spring.stiffness,
-                rest_length: spring.rest_length,
-                damping: spring.damping,
-            })
-            .collect();
+        let springs = SpringDamper::all(scene);
         Self {
             forces: effects.attraction.is_some()
                 || effects.drag.is_some()

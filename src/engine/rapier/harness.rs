@@ -1,10 +1,10 @@
 //! What carom itself adds to a Rapier world before each step: forces that Rapier has no
 //! feature for, or that are wanted as the lecture computes them.
 
-use super::layout::{Layout, SpringPlan, springs};
+use super::layout::Layout;
 use super::world::World;
 use crate::engine::Forces;
-use crate::physics::{BodyState, Vector3, attraction, length, spring_damper};
+use crate::physics::{BodyState, SpringDamper, Vector3, attraction, length};
 use crate::recording::initial_states;
 use crate::scene::{Attraction, Drag, Scene};
 
@@ -15,7 +15,7 @@ use crate::scene::{Attraction, Drag, Scene};
 pub(super) struct Harness {
     attraction: Option<Attraction>,
     drag: Option<Drag>,
-    springs: Vec<SpringPlan>,
+    springs: Vec<SpringDamper>,
     gravity: Option<Vector3>,
     step: f64,
     masses: Vec<f64>,
@@ -31,7 +31,11 @@ impl Harness {
         let harness = Self {
             attraction: effects.attraction,
             drag: effects.drag.filter(|_| lecture),
-            springs: if lecture { springs(scene) } else { Vec::new() },
+            springs: if lecture {
+                SpringDamper::all(scene)
+            } else {
+                Vec::new()
+            },
             gravity: effects
                 .gravity
                 .filter(|_| lecture)
@@ -90,13 +94,7 @@ impl Harness {
         }
         for spring in &self.springs {
             let [a, b] = spring.ends.map(|end| &states[end]);
-            let force = spring_damper(
-                spring.stiffness,
-                spring.rest_length,
-                spring.damping,
-                [&a.position, &b.position],
-                [&a.velocity, &b.velocity],
-            );
+            let force = spring.force([&a.position, &b.position], [&a.velocity, &b.velocity]);
             forces[spring.ends[0]] += force;
             forces[spring.ends[1]] += -force;
         }

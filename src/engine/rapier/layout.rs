@@ -3,6 +3,7 @@
 use super::range::Range;
 use crate::engine::{Forces, RapierSettings};
 use crate::error::Result;
+use crate::physics::SpringDamper;
 use crate::recording::Wall;
 use crate::scene::{Cushions, Scene};
 
@@ -32,15 +33,6 @@ pub(super) struct WallPlan {
     pub distance: f64,
 }
 
-/// A spring joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SpringPlan {
-    pub ends: [usize; 2],
-    pub stiffness: f64,
-    pub rest_length: f64,
-    pub damping: f64,
-}
-
 /// Everything that a world is built from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
@@ -59,7 +51,7 @@ pub(super) struct Layout {
     /// Rapier's own gravity.
     pub gravity: Option<[f64; 3]>,
     /// Rapier's own springs.
-    pub springs: Vec<SpringPlan>,
+    pub springs: Vec<SpringDamper>,
 }
 
 impl Layout {
@@ -189,25 +181,8 @@ fn walls(cushions: &Cushions) -> impl Iterator<Item = WallPlan> {
 /// A spring without stiffness and damping is left out: Rapier divides 1 by
 /// `h (h k + kd)` and takes the inverse of nothing for zero, so that such a joint is a rigid
 /// bar instead of no spring.
-fn joints(scene: &Scene) -> Vec<SpringPlan> {
-    let mut joints = springs(scene);
+fn joints(scene: &Scene) -> Vec<SpringDamper> {
+    let mut joints = SpringDamper::all(scene);
     joints.retain(|spring| spring.stiffness > 0.0 || spring.damping > 0.0);
     joints
-}
-
-/// The springs of a scene with their ends as body indices.
-pub(super) fn springs(scene: &Scene) -> Vec<SpringPlan> {
-    let plan = |(spring, ends): (&crate::scene::Spring, [usize; 2])| SpringPlan {
-        ends,
-        stiffness: spring.stiffness,
-        rest_length: spring.rest_length,
-        damping: spring.damping,
-    };
-    scene
-        .effects
-        .springs
-        .iter()
-        .zip(scene.spring_ends())
-        .map(plan)
-        .collect()
 }
