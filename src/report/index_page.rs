@@ -17,6 +17,9 @@ const TEMPLATE: &str = include_str!("../../templates/index.md");
 /// Two voices of a scene count as agreeing while they stay within this share of its size.
 const AGREEING: f64 = 0.01;
 
+/// Two voices are far apart beyond this share of the scene's size.
+const FAR_APART: f64 = 0.25;
+
 /// What the template is given.
 #[derive(Serialize)]
 struct Page<'a> {
@@ -156,7 +159,8 @@ fn error(summary: &Summary, engine: &str) -> Option<f64> {
 }
 
 /// The case whose picture says most: of those in which two engines disagree about the course
-/// of events, the one with truth in which they are farthest apart.
+/// of events and end up far apart, the one with the fewest impacts, for it is read most
+/// easily. Where there is none, the one in which they are farthest apart.
 fn most_telling<'a>(
     summaries: &'a [Summary],
     first: &str,
@@ -165,12 +169,24 @@ fn most_telling<'a>(
     let pairs = summaries
         .iter()
         .filter_map(|summary| Some((summary, summary.pair(first, second)?)));
-    let weight = |(summary, pair): &(&Summary, &PairSummary)| {
-        let story = f64::from(u8::from(pair.first_disagreement.is_some()));
-        let truth = f64::from(u8::from(truth(summary).is_some()));
-        2.0 * story + truth + pair.position_divergence_relative.min(1.0)
+    let pairs: Vec<_> = pairs.collect();
+    let impacts = |(summary, _): &(&Summary, &PairSummary)| {
+        let events = summary.voices.iter().map(|voice| voice.events);
+        events
+            .map(|events| events.contacts + events.cushions)
+            .sum::<u64>()
     };
-    pairs.max_by(|a, b| weight(a).total_cmp(&weight(b)))
+    let tells = |(_, pair): &&(&Summary, &PairSummary)| {
+        pair.first_disagreement.is_some() && pair.position_divergence_relative > FAR_APART
+    };
+    let distance = |(_, pair): &(&Summary, &PairSummary)| pair.position_divergence_relative;
+    let readable = pairs.iter().filter(tells).min_by_key(|case| impacts(case));
+    let farthest = || {
+        pairs
+            .iter()
+            .max_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    readable.or_else(farthest).copied()
 }
 
 fn caption(summary: &Summary, pair: &PairSummary) -> String {

@@ -176,11 +176,9 @@ fn a_report_is_whole_and_the_same_every_time() {
             continue;
         }
         let text = String::from_utf8(bytes.clone()).unwrap();
-        for link in text
-            .split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split(')').next())
-        {
+        let after = |mark| text.split(mark).skip(1);
+        let links = after("](").chain(after("src=\""));
+        for link in links.filter_map(|rest| rest.split([')', '"']).next()) {
             let target = Path::new(name).parent().unwrap().join(link);
             assert!(
                 link.starts_with("http") || target.exists(),
