@@ -27,7 +27,10 @@ pub struct Divergence {
     pub voice_b: String,
     /// Sample by sample.
     pub samples: Vec<DivergenceSample>,
-    /// Largest distance of each body over all samples. Shape: `[body]`.
+    /// How many samples at the start are comparable; past them a recording no longer vouches
+    /// for its positions.
+    pub comparable: usize,
+    /// Largest distance of each body over the comparable samples. Shape: `[body]`.
     pub body_max: Vec<f64>,
 }
 
@@ -37,6 +40,10 @@ impl Divergence {
     pub fn between(scene: &Scene, a: &Recording, b: &Recording) -> Self {
         let mut body_max = vec![0.0_f64; scene.bodies.len()];
         let mut samples = Vec::new();
+        let comparable = a
+            .comparable_samples(scene)
+            .min(b.comparable_samples(scene))
+            .max(1);
         for (sample, (states_a, states_b)) in a.samples().zip(b.samples()).enumerate() {
             let mut at = DivergenceSample {
                 time: scene.sample_time(sample),
@@ -49,7 +56,9 @@ impl Divergence {
                 let distance = (state_a.position - state_b.position).norm();
                 at.rms_position += distance * distance;
                 at.rms_velocity += (state_a.velocity - state_b.velocity).norm_squared();
-                body_max[body] = body_max[body].max(distance);
+                if sample < comparable {
+                    body_max[body] = body_max[body].max(distance);
+                }
                 if distance > at.max_position {
                     (at.max_position, at.worst_body) = (distance, body);
                 }
@@ -63,6 +72,7 @@ impl Divergence {
         Self {
             voice_a: a.voice.clone(),
             voice_b: b.voice.clone(),
+            comparable: comparable.min(samples.len()),
             samples,
             body_max,
         }
@@ -80,7 +90,7 @@ impl Divergence {
         recordings.iter().enumerate().flat_map(with_later).collect()
     }
 
-    /// The sample at which one body is farthest apart; the first of equals.
+    /// The comparable sample at which one body is farthest apart; the first of equals.
     #[must_use]
     pub fn largest(&self) -> DivergenceSample {
         let farther = |best: DivergenceSample, at: &DivergenceSample| {
@@ -90,13 +100,14 @@ impl Divergence {
                 best
             }
         };
-        self.samples.iter().fold(self.samples[0], farther)
+        let comparable = &self.samples[..self.comparable];
+        comparable.iter().fold(self.samples[0], farther)
     }
 
-    /// The first time at which one body is apart by more than that.
+    /// The first comparable time at which one body is apart by more than that.
     #[must_use]
     pub fn first_beyond(&self, distance: f64) -> Option<f64> {
-        self.samples
+        self.samples[..self.comparable]
             .iter()
             .find(|at| at.max_position > distance)
             .map(|at| at.time)

@@ -35,6 +35,8 @@ pub struct EventAgreement {
     pub matched: usize,
     /// Largest difference in time of two matched impacts, s.
     pub time_difference_max: f64,
+    /// Largest difference in impulse of two matched impacts, over the larger of the two.
+    pub impulse_difference_max: f64,
     /// The earliest disagreement.
     pub first_disagreement: Option<Disagreement>,
 }
@@ -121,6 +123,9 @@ pub fn compare_events(scene: &Scene, a: &Recording, b: &Recording) -> EventAgree
             agreement.matched += 1;
             let difference = (event.time - twin.time).abs();
             agreement.time_difference_max = agreement.time_difference_max.max(difference);
+            let scale = event.impulse.max(twin.impulse);
+            let difference = (event.impulse - twin.impulse).abs() / scale;
+            agreement.impulse_difference_max = agreement.impulse_difference_max.max(difference);
         } else {
             let next = participants(event).filter_map(|body| other.next_of(body));
             let rivals = next.filter(|rival| rival.kind != event.kind);

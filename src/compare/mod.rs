@@ -2,11 +2,16 @@
 
 mod divergence;
 mod events;
+mod horizon;
 mod metrics;
+mod verdict;
 
 pub use divergence::{Divergence, DivergenceSample};
 pub use events::{Disagreement, EventAgreement, compare_events};
+pub use horizon::horizon;
 pub use metrics::{Drift, Metrics, metrics};
+
+pub use verdict::{RIGHT_WITHIN, Verdict};
 
 use crate::recording::Recording;
 

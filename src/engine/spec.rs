@@ -95,6 +95,14 @@ impl RapierSettings {
 }
 
 impl EngineSpec {
+    /// Whether it computes step by step, with an error that depends on the step.
+    #[must_use]
+    pub fn takes_steps(&self) -> bool {
+        match self.kind {
+            EngineKind::Impulse | EngineKind::Rapier(_) => true,
+        }
+    }
+
     /// Whether this build has the engine.
     #[must_use]
     pub fn is_built(&self) -> bool {

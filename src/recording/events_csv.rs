@@ -36,7 +36,7 @@ pub fn write_events(
 /// Reads a list of events; `file` is its name in messages.
 ///
 /// # Errors
-/// [`Error::Table`] with the line, for a wrong header, number, kind or name.
+/// [`Error::Table`](crate::error::Error::Table) with the line, for a wrong header, number, kind or name.
 pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventLog> {
     let mut table = Table::open(input, &HEADER, file)?;
     let mut events = Vec::new();

@@ -1,5 +1,6 @@
 //! What an engine produced: states on the scene's time grid, events, work, and how it ended.
 
+mod digits;
 mod event;
 mod events_csv;
 mod number;
@@ -7,6 +8,7 @@ mod outcome;
 mod table;
 mod trajectory_csv;
 
+pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
 pub use events_csv::{read_events, write_events};
 pub use number::finite_or_blank;
@@ -47,6 +49,10 @@ pub struct Recording {
     pub work: Work,
     /// How it ended.
     pub outcome: Outcome,
+    /// Digits that each sample vouches for; none where nobody certified them.
+    pub digits: Option<Vec<Digits>>,
+    /// From when on the model has no single answer.
+    pub undetermined: Option<Undetermined>,
 }
 
 impl Recording {
@@ -67,6 +73,8 @@ impl Recording {
             events: EventLog::default(),
             work: Work::default(),
             outcome: Outcome::Finished,
+            digits: None,
+            undetermined: None,
         }
     }
 
@@ -80,6 +88,34 @@ impl Recording {
     #[must_use]
     pub fn sample_count(&self) -> usize {
         self.states.len() / self.body_count
+    }
+
+    /// How many samples at the start can be compared position by position: those with enough
+    /// certified digits, before anything undetermined. All of them where nothing is certified.
+    #[must_use]
+    pub fn comparable_samples(&self, scene: &Scene) -> usize {
+        let count = self.sample_count();
+        let certain = self.digits.as_ref().map_or(count, |digits| {
+            let weak = |digits: &Digits| digits.positions < COMPARABLE_DIGITS;
+            digits.iter().position(weak).unwrap_or(count)
+        });
+        let determined = self.undetermined.as_ref().map_or(count, |from| {
+            (0..count)
+                .find(|sample| scene.sample_time(*sample) >= from.time_s)
+                .unwrap_or(count)
+        });
+        certain.min(determined)
+    }
+
+    /// The fewest digits of any comparable sample; none where nothing is certified.
+    #[must_use]
+    pub fn fewest_digits(&self, scene: &Scene) -> Option<Digits> {
+        let comparable = self.comparable_samples(scene);
+        let digits = self.digits.as_ref()?.iter().take(comparable).copied();
+        digits.reduce(|fewest, digits| Digits {
+            positions: fewest.positions.min(digits.positions),
+            velocities: fewest.velocities.min(digits.velocities),
+        })
     }
 
     /// The states at a sample. Shape: `[body]`.

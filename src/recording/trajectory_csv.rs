@@ -38,7 +38,7 @@ pub fn write_trajectory(
 /// Reads a trajectory that stands on the scene's time grid; `file` is its name in messages.
 ///
 /// # Errors
-/// [`Error::Table`] with the line, for a wrong header or number, a body missing or out of
+/// [`Error::Table`](crate::error::Error::Table) with the line, for a wrong header or number, a body missing or out of
 /// order, and a time off the grid.
 pub fn read_trajectory(
     voice: &str,

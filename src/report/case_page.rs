@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use super::format::whole_percent;
 use super::template::fill;
 use super::{engineering, percent};
+use crate::compare::{RIGHT_WITHIN, Verdict};
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary};
 
@@ -16,6 +18,7 @@ struct Page<'a> {
     unit: &'static str,
     size: String,
     findings: Vec<String>,
+    verdicts: Vec<String>,
     in_report: bool,
     pictures: &'a [&'a str],
     shown: String,
@@ -75,6 +78,7 @@ pub(super) fn case_page(
             .iter()
             .map(|(who, what)| format!("**{who}** {what}"))
             .collect(),
+        verdicts: verdicts(summary),
         in_report,
         pictures,
         shown: shown.join(", "),
@@ -120,6 +124,38 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         found.extend(pairs.map(|pair| parting(summary, pair)));
     }
     found
+}
+
+/// Who is wrong, from when and by how much, a sentence each.
+fn verdicts(summary: &Summary) -> Vec<String> {
+    let unit = summary.length_unit.symbol();
+    let sentence = |verdict: &Verdict| {
+        let error = format!(
+            "{} ({} of the size)",
+            with_unit(verdict.error_max, unit),
+            percent(verdict.error_relative)
+        );
+        let mut wrong = Vec::new();
+        wrong.extend(verdict.wrong_from_s.map(|time| {
+            let off = whole_percent(RIGHT_WITHIN);
+            format!("more than {off} off from {} s on", engineering(time))
+        }));
+        wrong.extend(
+            verdict
+                .other_story_from_s
+                .map(|time| format!("with other impacts from {} s on", engineering(time))),
+        );
+        if wrong.is_empty() {
+            format!("`{}` is right to within {error}.", verdict.engine)
+        } else {
+            format!(
+                "`{}` is wrong: {}; at most {error}.",
+                verdict.engine,
+                wrong.join(", ")
+            )
+        }
+    };
+    summary.verdicts.iter().map(sentence).collect()
 }
 
 fn parting(summary: &Summary, pair: &PairSummary) -> (String, String) {

@@ -39,3 +39,8 @@ pub fn engineering(value: f64) -> String {
 pub fn percent(share: f64) -> String {
     format!("{} %", engineering(100.0 * share))
 }
+
+/// A share that was chosen round, as a percentage without needless zeros.
+pub(super) fn whole_percent(share: f64) -> String {
+    format!("{} %", 100.0 * share)
+}

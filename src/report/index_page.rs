@@ -5,17 +5,16 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::case_page::with_unit;
+use super::format::whole_percent;
 use super::output::write_json;
 use super::template::fill;
 use super::{Folder, engineering, percent};
+use crate::compare::RIGHT_WITHIN;
 use crate::engine::EngineSpec;
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary};
 
 const TEMPLATE: &str = include_str!("../../templates/index.md");
-
-/// Two voices of a scene count as agreeing while they stay within this share of its size.
-const AGREEING: f64 = 0.01;
 
 /// Two voices are far apart beyond this share of the scene's size.
 const FAR_APART: f64 = 0.25;
@@ -29,7 +28,7 @@ struct Page<'a> {
     second: &'a str,
     engines: Vec<EngineRow>,
     rows: Vec<Row>,
-    truth_rows: Vec<TruthRow>,
+    reference_rows: Vec<ReferenceRow>,
     versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
@@ -64,8 +63,9 @@ struct Row {
 }
 
 #[derive(Serialize)]
-struct TruthRow {
+struct ReferenceRow {
     scene: String,
+    reference: String,
     errors: Vec<String>,
 }
 
@@ -128,34 +128,20 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .iter()
             .map(|summary| row(summary, first, second))
             .collect(),
-        truth_rows: summaries
+        reference_rows: summaries
             .iter()
-            .filter_map(|summary| truth_row(summary, engines))
+            .filter_map(|summary| reference_row(summary, engines))
             .collect(),
         versions: crate::engine::versions(),
         dt: engineering(dt),
         cases: summaries.len(),
         with_truth: summaries
             .iter()
-            .filter(|summary| truth(summary).is_some())
+            .filter(|summary| summary.truth_origin.is_some())
             .count(),
         pictures: cfg!(feature = "plots"),
     };
     fill(TEMPLATE, page)
-}
-
-fn truth(summary: &Summary) -> Option<&VoiceSummary> {
-    summary.voices.iter().find(|voice| voice.engine.is_none())
-}
-
-/// The largest error of an engine against truth, as a share of the scene's size.
-fn error(summary: &Summary, engine: &str) -> Option<f64> {
-    let truth = truth(summary)?;
-    Some(
-        summary
-            .pair(engine, &truth.voice)?
-            .position_divergence_relative,
-    )
 }
 
 /// The case whose picture says most: of those in which two engines disagree about the course
@@ -214,13 +200,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
         sentences.extend(parting(summaries, &first.name, &second.name));
     }
     sentences.extend(energy_drifts(summaries, engines));
-    let with_truth: Vec<_> = summaries
-        .iter()
-        .filter(|summary| truth(summary).is_some())
-        .collect();
-    if !with_truth.is_empty() && !engines.is_empty() {
-        sentences.push(nearest(&with_truth, engines));
-    }
+    sentences.extend(verdicts(summaries, engines));
     let unfinished: Vec<_> = summaries
         .iter()
         .flat_map(|summary| summary.voices.iter().map(move |voice| (summary, voice)))
@@ -264,7 +244,7 @@ fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
     })?;
     let together = pairs
         .iter()
-        .filter(|(_, p)| p.position_divergence_relative <= AGREEING)
+        .filter(|(_, p)| p.position_divergence_relative <= RIGHT_WITHIN)
         .count();
     let stories = pairs
         .iter()
@@ -276,7 +256,7 @@ fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
          other; in {stories} they disagree about which impact comes next. They part most in \
          [{}]({}/README.md), by {} ({} of its size).",
         pairs.len(),
-        percent(AGREEING),
+        whole_percent(RIGHT_WITHIN),
         summary.title,
         summary.scene,
         with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
@@ -308,36 +288,32 @@ fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String
     (!worst.is_empty()).then_some(said)
 }
 
-/// Who is nearest to truth how often, and each engine's middle error.
-fn nearest(with_truth: &[&Summary], engines: &[EngineSpec]) -> String {
-    let errors = |name: &str| -> Vec<f64> {
-        let mut errors: Vec<_> = with_truth
-            .iter()
-            .filter_map(|summary| error(summary, name))
-            .collect();
-        errors.sort_by(f64::total_cmp);
-        errors
-    };
-    let middle = |sorted: &[f64]| sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-    let within = |sorted: &[f64]| sorted.iter().filter(|error| **error <= AGREEING).count();
-    let rows: Vec<_> = engines
+/// How often each engine is right, and its middle error.
+fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
+    let judged = summaries
         .iter()
-        .map(|spec| {
-            let errors = errors(&spec.name);
-            format!(
-                "`{}` in {} (median error {})",
-                spec.name,
-                within(&errors),
-                percent(middle(&errors))
-            )
-        })
-        .collect();
-    format!(
-        "Truth is known in {} cases. Within {} of the scene's size of it, to the end: {}.",
-        with_truth.len(),
-        percent(AGREEING),
+        .filter(|summary| !summary.verdicts.is_empty());
+    let count = judged.count();
+    let of_engine = |spec: &EngineSpec| {
+        let all = summaries.iter().flat_map(|summary| &summary.verdicts);
+        let own: Vec<_> = all.filter(|verdict| verdict.engine == spec.name).collect();
+        let right = own.iter().filter(|verdict| verdict.is_right()).count();
+        let mut errors: Vec<_> = own.iter().map(|verdict| verdict.error_relative).collect();
+        errors.sort_by(f64::total_cmp);
+        let middle = percent(*errors.get(errors.len() / 2)?);
+        Some(format!(
+            "`{}` in {right} (median error {middle})",
+            spec.name
+        ))
+    };
+    let rows: Vec<_> = engines.iter().filter_map(of_engine).collect();
+    let said = format!(
+        "In {count} cases the right answer is known. The engines stay within {} of the scene's \
+         size of it, with every impact in order: {}.",
+        whole_percent(RIGHT_WITHIN),
         rows.join(", ")
-    )
+    );
+    (!rows.is_empty()).then_some(said)
 }
 
 fn row(summary: &Summary, first: &str, second: &str) -> Row {
@@ -389,17 +365,25 @@ fn disagreement(pair: &PairSummary) -> String {
     }
 }
 
-fn truth_row(summary: &Summary, engines: &[EngineSpec]) -> Option<TruthRow> {
-    truth(summary)?;
+fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceRow> {
+    let reference = summary.reference.as_ref()?;
     let unit = summary.length_unit.symbol();
     let cell = |spec: &EngineSpec| {
-        let pair = summary.pair(&spec.name, "truth");
-        pair.map_or(String::new(), |pair| {
-            with_unit(pair.position_divergence_max, unit)
-        })
+        // The exact engine is itself the reference; it is held against truth.
+        let against = if spec.takes_steps() {
+            reference.as_str()
+        } else {
+            "truth"
+        };
+        let pair = summary.pair(&spec.name, against);
+        pair.map_or_else(
+            || "–".to_owned(),
+            |pair| with_unit(pair.position_divergence_max, unit),
+        )
     };
-    Some(TruthRow {
+    Some(ReferenceRow {
         scene: summary.scene.clone(),
+        reference: reference.clone(),
         errors: engines.iter().map(cell).collect(),
     })
 }

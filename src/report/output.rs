@@ -9,21 +9,18 @@ use crate::error::Result;
 use crate::recording::{write_events, write_trajectory};
 use crate::study::{SideBySide, Summary, Voice};
 
-/// Engines that a picture shows, in the order in which they were asked for; with truth that
-/// makes three voices, and more would show nothing clearly.
+/// Engines that a picture shows, in the order in which they were asked for; with a reference
+/// that makes three voices, and more would show nothing clearly.
 const PICTURED: usize = 2;
 
-/// The voices of the pictures: the engines first named, then truth.
+/// The voices of the pictures: the engines first named, then what they are held against.
 fn pictured(comparison: &SideBySide) -> Vec<&Voice> {
-    let truth = comparison
-        .voices
-        .iter()
-        .filter(|voice| voice.spec.is_none());
-    let engines = comparison
-        .voices
-        .iter()
-        .filter(|voice| voice.spec.is_some());
-    engines.take(PICTURED).chain(truth).collect()
+    let engines = comparison.voices.iter().filter(|voice| voice.takes_steps());
+    let engines: Vec<_> = engines.take(PICTURED).collect();
+    if engines.is_empty() {
+        return comparison.voices.iter().take(PICTURED).collect();
+    }
+    engines.into_iter().chain(comparison.reference()).collect()
 }
 
 /// Where a comparison's page stands.

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::case::Case;
 use crate::compare::{
-    Divergence, Drift, EventAgreement, Metrics, compare_events, metrics, scene_size,
+    Divergence, Drift, EventAgreement, Metrics, Verdict, compare_events, metrics, scene_size,
 };
 use crate::engine::{EngineSpec, record};
 use crate::error::{Error, Result};
@@ -35,6 +35,12 @@ impl Voice {
             metrics,
             drift,
         }
+    }
+
+    /// Whether it takes steps, as the engines do that are to be judged.
+    #[must_use]
+    pub fn takes_steps(&self) -> bool {
+        self.spec.as_ref().is_some_and(EngineSpec::takes_steps)
     }
 
     /// The name: an engine's, or `truth`.
@@ -77,6 +83,26 @@ impl SideBySide {
     #[must_use]
     pub fn voice(&self, name: &str) -> Option<&Voice> {
         self.voices.iter().find(|voice| voice.name() == name)
+    }
+
+    /// The voice that the engines are held against: the exact engine where it ran, else truth.
+    #[must_use]
+    pub fn reference(&self) -> Option<&Voice> {
+        self.voices.iter().find(|voice| !voice.takes_steps())
+    }
+
+    /// Who is wrong, from when, and by how much: one verdict for each engine that takes steps.
+    #[must_use]
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        let Some(reference) = self.reference() else {
+            return Vec::new();
+        };
+        let judged = self.voices.iter().filter(|voice| voice.takes_steps());
+        let verdict = |voice: &Voice| {
+            let (divergence, agreement) = self.pair(voice.name(), reference.name())?;
+            Some(Verdict::on(voice.name(), divergence, agreement, self.size))
+        };
+        judged.filter_map(verdict).collect()
     }
 
     /// The comparison of two voices, in either order.

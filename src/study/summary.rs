@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Refusal, SideBySide, Voice};
-use crate::compare::{Disagreement, Divergence, Drift, EventAgreement};
+use crate::compare::{Disagreement, Divergence, Drift, EventAgreement, Verdict};
 use crate::engine::{EngineSpec, notes};
-use crate::recording::{Event, EventCounts, EventKind, Outcome, Work};
+use crate::recording::{Digits, Event, EventCounts, EventKind, Outcome, Undetermined, Work};
 use crate::scene::{LengthUnit, Scene};
 
 /// Everything about one comparison but the curves.
@@ -45,6 +45,10 @@ pub struct Summary {
     pub truth_origin: Option<String>,
     /// Each engine, then truth.
     pub voices: Vec<VoiceSummary>,
+    /// The voice that the engines are held against.
+    pub reference: Option<String>,
+    /// Who is wrong, from when, and by how much.
+    pub verdicts: Vec<Verdict>,
     /// The engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// Each pair of voices.
@@ -74,6 +78,10 @@ pub struct VoiceSummary {
     pub events_merged: u64,
     /// Counted work.
     pub work: Work,
+    /// Fewest certified digits over the comparable samples; none where nothing is certified.
+    pub digits_min: Option<Digits>,
+    /// From when on the model has no single answer.
+    pub undetermined: Option<Undetermined>,
     /// Drift of energy and momentum, and the deepest penetration.
     #[serde(flatten)]
     pub drift: Drift,
@@ -106,6 +114,10 @@ pub struct PairSummary {
     pub impacts_matched: usize,
     /// Largest difference in time of two matched impacts, s.
     pub impact_time_difference_max_s: f64,
+    /// Largest difference in impulse of two matched impacts, over the larger of the two.
+    pub impulse_difference_max: f64,
+    /// Until when both vouch for their positions, s.
+    pub comparable_until_s: f64,
     /// The first impact on which the two disagree.
     pub first_disagreement: Option<DisagreementSummary>,
     /// Largest distance of each body.
@@ -147,6 +159,8 @@ impl Summary {
                 .iter()
                 .map(|voice| VoiceSummary::of(scene, voice))
                 .collect(),
+            reference: comparison.reference().map(|voice| voice.name().to_owned()),
+            verdicts: comparison.verdicts(),
             refusals: comparison.refusals.clone(),
             pairs: comparison
                 .pairs
@@ -185,6 +199,8 @@ impl VoiceSummary {
             events: recording.events.counts(),
             events_merged: recording.events.merged(),
             work: recording.work,
+            digits_min: recording.fewest_digits(scene),
+            undetermined: recording.undetermined.clone(),
             drift: voice.drift,
         }
     }
@@ -231,6 +247,8 @@ impl PairSummary {
             centre_of_mass_difference_max: centres.fold(0.0, f64::max),
             impacts_matched: agreement.matched,
             impact_time_difference_max_s: agreement.time_difference_max,
+            impulse_difference_max: agreement.impulse_difference_max,
+            comparable_until_s: divergence.samples[divergence.comparable - 1].time,
             first_disagreement: agreement.first_disagreement.map(|disagreement| {
                 let voices = [divergence.voice_a.as_str(), divergence.voice_b.as_str()];
                 DisagreementSummary::of(scene, voices, &disagreement)

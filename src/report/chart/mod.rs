@@ -9,6 +9,7 @@ mod canvas;
 mod curves;
 mod legend;
 mod paths;
+mod paths_figure;
 mod png;
 mod polyline;
 mod text;
@@ -21,7 +22,8 @@ mod testing;
 
 pub use axis::Scale;
 pub use curves::{Curve, CurvesFigure, Marks, Panel, Weight, curves};
-pub use paths::{AxisLabel, PathBody, PathsFigure, View, paths};
+pub use paths::paths;
+pub use paths_figure::{AxisLabel, PathBody, PathsFigure, View};
 pub use theme::{COLOR_COUNT, LineStyle};
 
 /// Why a picture could not be made. None of these depends on the data.

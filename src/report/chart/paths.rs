@@ -6,13 +6,13 @@ use super::ChartError;
 use super::axis::{Axis, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
+use super::paths_figure::{PathBody, PathsFigure};
 use super::polyline::{Frame, Point, clipped, runs, thinned};
 use super::text::shortened;
 use super::theme::{
     CANVAS, COLOR_COUNT, CUSHION, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET,
     SMALL_PX, color, mix,
 };
-use super::ticks::with_exponent;
 use super::window::{Window, window};
 
 /// More bodies than this are not told apart by colour; the colour tells the voice.
@@ -29,77 +29,6 @@ const FOOT: f64 = 84.0;
 const HEAD: f64 = 42.0;
 /// Least width of a legend beside the plot.
 const COLUMN: f64 = 380.0;
-
-/// A picture of paths in a plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PathsFigure {
-    /// What is shown.
-    pub title: String,
-    /// What else the reader should know; may be empty.
-    pub subtitle: String,
-    /// The two axes of the points.
-    pub axes: [AxisLabel; 2],
-    /// How the plane is looked at.
-    pub view: View,
-    /// Half extents of the table along both axes, for a table around the origin.
-    pub cushions: Option<[f64; 2]>,
-    /// What moves.
-    pub bodies: Vec<PathBody>,
-    /// Names of the engines, in the order of [`PathBody::tracks`]; up to three are told
-    /// apart.
-    pub voices: Vec<String>,
-}
-
-/// How the plane is looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum View {
-    /// On the x-z plane of a right-handed system with y up, from above: x to the right
-    /// and z down, or turned by a quarter (z to the right, x up) where that is the wider
-    /// picture. Never mirrored.
-    Above,
-    /// The first axis to the right, the second up, as for x and y seen from the side.
-    Side,
-}
-
-/// Name and unit of an axis.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AxisLabel {
-    /// Such as "x".
-    pub name: String,
-    /// Such as "mm"; may be empty.
-    pub unit: String,
-}
-
-impl AxisLabel {
-    /// A label.
-    #[must_use]
-    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-        }
-    }
-
-    fn text(&self, exponent: i32) -> String {
-        let plain = if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} [{}]", self.name, self.unit)
-        };
-        with_exponent(&plain, exponent)
-    }
-}
-
-/// A body and where each voice saw it go.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PathBody {
-    /// Its name.
-    pub name: String,
-    /// Its radius, in the unit of the axes.
-    pub radius: f64,
-    /// Points in the plane, `[voice][sample]`. One that is not finite leaves a gap.
-    pub tracks: Vec<Vec<[f64; 2]>>,
-}
 
 /// Draws paths as a PNG. Each body starts at a pale disc, true to its radius, and ends at
 /// an outlined one for each voice.
@@ -396,6 +325,7 @@ fn entries(figure: &PathsFigure, window: &Window) -> Vec<Vec<Entry>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::paths_figure::{AxisLabel, View};
     use super::super::testing::decode;
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Which part of the plane a picture of paths shows, and how it is turned.
 
 use super::axis::extent;
-use super::paths::{PathsFigure, View};
+use super::paths_figure::{PathsFigure, View};
 use super::polyline::{Frame, Point};
 
 /// Share of all samples, at each end, that may lie outside when a few run far away.
@@ -173,7 +173,7 @@ fn grown(limits: [f64; 2], least: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{AxisLabel, PathBody};
+    use super::super::paths_figure::{AxisLabel, PathBody};
     use super::*;
 
     const BOX: Frame = Frame {

@@ -1,0 +1,67 @@
+//! Who is wrong, from when, and by how much.
+
+use serde::Serialize;
+
+use super::{Divergence, EventAgreement};
+
+/// An engine counts as right while it stays within this share of the scene's size of the
+/// reference.
+pub const RIGHT_WITHIN: f64 = 0.01;
+
+/// How an engine stands against a reference: the exact engine, or independent truth.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The engine.
+    pub engine: String,
+    /// What it is held against.
+    pub reference: String,
+    /// When it first leaves the reference by more than [`RIGHT_WITHIN`] of the size, s.
+    pub wrong_from_s: Option<f64>,
+    /// When it first has another impact than the reference, s.
+    pub other_story_from_s: Option<f64>,
+    /// Largest distance of a body from the reference, scene length unit.
+    pub error_max: f64,
+    /// The same over the scene's size.
+    pub error_relative: f64,
+    /// Until when the reference vouches for its positions, s; later nobody is called wrong.
+    pub comparable_until_s: f64,
+}
+
+impl Verdict {
+    /// The verdict on the first voice of a divergence, the second being the reference.
+    #[must_use]
+    pub fn on(
+        engine: &str,
+        divergence: &Divergence,
+        agreement: &EventAgreement,
+        size: f64,
+    ) -> Self {
+        let largest = divergence.largest();
+        let reference = if divergence.voice_a == engine {
+            &divergence.voice_b
+        } else {
+            &divergence.voice_a
+        };
+        let comparable_until_s = divergence.samples[divergence.comparable - 1].time;
+        let story = agreement.first_disagreement.map(|first| first.time());
+        Self {
+            engine: engine.to_owned(),
+            reference: reference.clone(),
+            wrong_from_s: divergence.first_beyond(RIGHT_WITHIN * size),
+            other_story_from_s: story.filter(|time| *time <= comparable_until_s),
+            error_max: largest.max_position,
+            error_relative: if size > 0.0 {
+                largest.max_position / size
+            } else {
+                0.0
+            },
+            comparable_until_s,
+        }
+    }
+
+    /// Whether the engine stays right as long as the reference vouches for itself.
+    #[must_use]
+    pub fn is_right(&self) -> bool {
+        self.wrong_from_s.is_none() && self.other_story_from_s.is_none()
+    }
+}
