@@ -46,6 +46,17 @@ pub(super) fn progress(length: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
+/// A sign of life on a terminal while one scene is computed.
+pub(super) fn spinner(message: &str, hidden: bool) -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if hidden {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar.set_message(message.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
 /// On Ctrl-C, leaves complete files only and ends with 130, as shells expect.
 pub(super) fn tidy_up_on_interrupt() -> Result<()> {
     let tidy_up = || {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::{EngineArgs, LibraryArgs};
-use super::output::{say, warn};
+use super::output::{say, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
 use crate::report::{Folder, Place, findings, write_comparison};
@@ -42,8 +42,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         crate::engine::prepare(&case.scene, spec, args.engines.dt)?;
     }
     let folder = Folder::open(&out)?;
+    let bar = spinner(&case.scene.name, args.quiet);
     let comparison = side_by_side(&case, &specs, args.engines.dt)?;
     let summary = write_comparison(&folder, &comparison, Place::Alone)?;
+    bar.finish_and_clear();
     for voice in summary
         .voices
         .iter()
