@@ -96,6 +96,16 @@ pub enum Error {
         /// The cargo feature that brings it.
         feature: &'static str,
     },
+    /// An engine whose model has no answer for a scene.
+    #[error("engine `{engine}` cannot compute this scene: {what}; {remedy}")]
+    EngineCannot {
+        /// The engine.
+        engine: String,
+        /// What it cannot do, or what is wrong for it.
+        what: String,
+        /// What would be right.
+        remedy: String,
+    },
     /// The same engine twice.
     #[error("engine `{name}` is asked for twice; name each engine once")]
     EngineTwice {
