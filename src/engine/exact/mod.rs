@@ -4,6 +4,8 @@ mod flight;
 mod real;
 mod wide;
 
-pub use flight::{FlightSimulation, Simultaneous, TieOrder};
+pub use flight::{
+    Certified, Digits, FlightSimulation, Simultaneous, TieOrder, Undetermined, certified,
+};
 pub use real::Real;
 pub use wide::Wide;

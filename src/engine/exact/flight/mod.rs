@@ -4,6 +4,7 @@
 //! `plan` what comes next for one body, `queue` for all; `world` lets it happen. `grid` keeps
 //! the number of pairs to look at small, `order` holds the rule for simultaneous events.
 
+mod certify;
 mod encounter;
 mod grid;
 mod law;
@@ -19,5 +20,6 @@ mod simulation;
 mod turn;
 mod world;
 
+pub use certify::{Certified, Digits, Undetermined, certified};
 pub use order::TieOrder;
 pub use simulation::{FlightSimulation, Simultaneous};
