@@ -37,6 +37,8 @@ pub(super) struct Model<R: Real> {
     pub law: Law<R>,
     /// The bodies. Shape: `[body]`.
     pub fixed: Vec<Fixed<R>>,
+    /// Diameter of every body, where all have the same: then no pair has to look it up.
+    diameter: Option<R>,
     /// Restitution of contacts, where spheres collide at all.
     pub contact: Option<R>,
     /// The walls, in the model's order.
@@ -70,7 +72,9 @@ impl<R: Real> Model<R> {
             })
             .collect();
         let duration = R::from_f64(scene.duration);
+        let shared = fixed.iter().all(|body| body.radius == fixed[0].radius);
         Self {
+            diameter: shared.then(|| fixed[0].radius.twice()),
             law: Law::of(scene, &fixed),
             fixed,
             contact: effects
@@ -89,6 +93,22 @@ impl<R: Real> Model<R> {
             tie: duration * R::from_f64(TIE_ROUNDINGS * R::EPSILON),
             near: duration * R::from_f64(NEAR),
         }
+    }
+}
+
+impl<R: Real> Model<R> {
+    /// Distance at which two bodies touch.
+    #[inline]
+    pub fn reach(&self, a: usize, b: usize) -> R {
+        match self.diameter {
+            Some(diameter) => diameter,
+            None => self.fixed[a].radius + self.fixed[b].radius,
+        }
+    }
+
+    /// Tells that radii have been changed.
+    pub fn forget_diameter(&mut self) {
+        self.diameter = None;
     }
 }
 

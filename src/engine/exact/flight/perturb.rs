@@ -34,6 +34,7 @@ pub(super) fn perturb<R: Real>(
             state.velocity[axis] += nudge(size * speed);
         }
     }
+    model.forget_diameter();
     for body in &mut model.fixed {
         body.mass += nudge(size * body.mass);
         body.radius += nudge(size * body.radius);

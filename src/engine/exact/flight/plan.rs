@@ -287,7 +287,7 @@ impl<R: Real> World<R> {
         let them = self.state_now(other);
         let d = me.position - them.position;
         let w = me.velocity - them.velocity;
-        let sum = self.model.fixed[body].radius + self.model.fixed[other].radius;
+        let sum = self.model.reach(body, other);
         let found = match &self.model.law {
             Law::Straight | Law::Drag { .. } | Law::Gravity { .. } => {
                 let Some(clock) = clock_to_contact(&d, &w, sum) else {

@@ -2,12 +2,17 @@
 
 use crate::engine::exact::real::Real;
 
-/// The earliest of one time a body, kept as a binary tree of winners.
+/// Bodies that share a leaf: their times lie in one line of the cache and are scanned.
+const BLOCK: usize = 8;
+
+/// The earliest of one time a body, kept as a binary tree of winners over blocks of bodies.
 ///
-/// A change of one time replays the matches on the way to the root: log2(bodies) of them.
+/// A change of one time replays the matches on the way to the root, as far as they change.
 #[derive(Debug, Clone)]
 pub(super) struct Queue<R> {
-    /// Winner of each match, the root at 1; leaves from `leaves` on. Shape: `[2 leaves]`.
+    /// Shape: `[body]`, filled up to whole blocks with times that never come.
+    times: Vec<R>,
+    /// Winner of each match, the root at 1; blocks from `leaves` on. Shape: `[2 leaves]`.
     nodes: Vec<(R, u32)>,
     leaves: usize,
 }
@@ -15,9 +20,11 @@ pub(super) struct Queue<R> {
 impl<R: Real> Queue<R> {
     /// A queue of that many bodies, none of which has an event.
     pub fn new(bodies: usize) -> Self {
-        let leaves = bodies.next_power_of_two();
+        let leaves = bodies.div_ceil(BLOCK).next_power_of_two();
+        let never = R::from_f64(f64::INFINITY);
         Self {
-            nodes: vec![(R::from_f64(f64::INFINITY), 0); 2 * leaves],
+            times: vec![never; leaves * BLOCK],
+            nodes: vec![(never, 0); 2 * leaves],
             leaves,
         }
     }
@@ -36,24 +43,38 @@ impl<R: Real> Queue<R> {
         reason = "a recording holds at most 4e7 states, so there are fewer bodies than 2^32"
     )]
     pub fn set(&mut self, body: usize, time: R) {
-        let mut node = self.leaves + body;
-        let mut winner = (time, body as u32);
-        self.nodes[node] = winner;
-        while node > 1 {
+        self.times[body] = time;
+        let start = body / BLOCK * BLOCK;
+        let mut winner = (self.times[start], start as u32);
+        for (place, rival) in self.times[start..start + BLOCK].iter().enumerate().skip(1) {
+            if *rival < winner.0 {
+                winner = (*rival, (start + place) as u32);
+            }
+        }
+        let mut node = self.leaves + body / BLOCK;
+        while self.nodes[node] != winner {
+            self.nodes[node] = winner;
+            if node == 1 {
+                break;
+            }
             let rival = self.nodes[node ^ 1];
             if rival.0 < winner.0 {
                 winner = rival;
             }
             node /= 2;
-            self.nodes[node] = winner;
         }
     }
 
     /// Whether more than one body has a time up to `limit`.
     #[inline]
     pub fn is_crowded(&self, limit: R) -> bool {
-        let (_, body) = self.first();
-        let mut node = self.leaves + body;
+        let (_, first) = self.first();
+        let start = first / BLOCK * BLOCK;
+        let block = &self.times[start..start + BLOCK];
+        if block.iter().filter(|time| **time <= limit).count() > 1 {
+            return true;
+        }
+        let mut node = self.leaves + first / BLOCK;
         while node > 1 {
             if self.nodes[node ^ 1].0 <= limit {
                 return true;
@@ -72,7 +93,9 @@ impl<R: Real> Queue<R> {
                 continue;
             }
             if node >= self.leaves {
-                found.push(node - self.leaves);
+                let start = (node - self.leaves) * BLOCK;
+                let due = (start..start + BLOCK).filter(|body| self.times[*body] <= limit);
+                found.extend(due);
             } else {
                 open.extend([2 * node + 1, 2 * node]);
             }
@@ -97,6 +120,28 @@ mod tests {
         let mut found = Vec::new();
         queue.up_to(5.0, &mut found);
         assert_eq!(found, [0, 2, 3]);
+    }
+
+    /// Every state of a queue of 41 bodies against a plain search.
+    #[test]
+    fn many_changes_keep_the_earliest_first() {
+        let mut queue = Queue::new(41);
+        let mut times = [f64::INFINITY; 41];
+        let mut lot = 1_u64;
+        for _ in 0..5000 {
+            lot = lot.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let (body, time) = ((lot >> 33) as usize % 41, (lot >> 40) as f64);
+            times[body] = time;
+            queue.set(body, time);
+            let earliest = times.iter().copied().fold(f64::INFINITY, f64::min);
+            let (first, winner) = queue.first();
+            assert_eq!((first, times[winner]), (earliest, earliest));
+            let mut found = Vec::new();
+            let limit = earliest + 1e5;
+            queue.up_to(limit, &mut found);
+            assert_eq!(found.len(), times.iter().filter(|t| **t <= limit).count());
+            assert_eq!(queue.is_crowded(limit), found.len() > 1);
+        }
     }
 
     #[test]
