@@ -97,11 +97,11 @@ pub enum Error {
         feature: &'static str,
     },
     /// A scene that an engine cannot compute.
-    #[error("{engine} cannot compute a scene {what}; {remedy}")]
+    #[error("{engine} cannot compute this scene: {what}; {remedy}")]
     EngineCannot {
         /// The engine.
         engine: &'static str,
-        /// What it cannot, after "a scene": `with bodies[0].mass = 1e30`.
+        /// What it cannot do, or what is wrong for it.
         what: String,
         /// What would be right.
         remedy: String,

@@ -26,6 +26,15 @@ pub enum Outcome {
         /// The body.
         body: usize,
     },
+    /// Impacts followed each other without end.
+    Collapsed {
+        /// Time at which they ran away, s.
+        time: f64,
+        /// The first body of the impact there.
+        a: usize,
+        /// The second body; none if it was a wall.
+        b: Option<usize>,
+    },
 }
 
 impl Outcome {
@@ -42,6 +51,7 @@ impl Outcome {
             Self::Finished => "Finished",
             Self::NonFinite { .. } => "NonFinite",
             Self::Disabled { .. } => "Disabled",
+            Self::Collapsed { .. } => "Collapsed",
         }
     }
 
@@ -57,6 +67,14 @@ impl Outcome {
             Self::Disabled { time, body } => format!(
                 "`{}` was disabled by the engine at t = {time} s; the recording ends before it",
                 scene.bodies[*body].name
+            ),
+            Self::Collapsed { time, a, b } => format!(
+                "impacts ran away at t = {time} s (`{}` and {}); the recording ends before it",
+                scene.bodies[*a].name,
+                b.map_or("a wall".to_owned(), |b| format!(
+                    "`{}`",
+                    scene.bodies[b].name
+                ))
             ),
         }
     }

@@ -7,6 +7,7 @@ mod closed_forms;
 mod command_line;
 mod controls;
 mod departures;
+mod exact_flight;
 #[cfg(feature = "rapier")]
 mod geometry;
 mod hostile;

@@ -104,7 +104,7 @@ impl Range {
         };
         Error::EngineCannot {
             engine,
-            what: format!("with {field} = {value:e}"),
+            what: format!("{field} is {value:e}"),
             remedy: format!("make it {bound}, by other units for example{other}"),
         }
     }

@@ -6,8 +6,10 @@ use crate::scene::{Body, Contact, Cushions, Effects, LengthUnit, Scene, Units};
 
 /// Equal spheres on a face-centred cubic lattice in a closed cubic box, with random velocities.
 ///
-/// Four spheres a cell, `4 cells³` in all. The lattice constant follows from the filling
-/// fraction f: `a = (16 pi r³ / (3 f))^(1/3)`. Velocities are normal with unit variance, with
+/// Four spheres a cell, `4 cells³` in all. The edge of the box follows from the filling
+/// fraction f: `L³ = 16 pi r³ cells³ / (3 f)`. The lattice stands in the middle, with half as
+/// much room to a wall as between neighbours: `a = L/(cells - 1/2 + 2^(-1/2))`, which leaves
+/// less room the fewer cells there are. Velocities are normal with unit variance, with
 /// the mean taken out, so that the gas as a whole is at rest.
 /// Source: Alder and Wainwright 1959, the start of most hard-sphere studies.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +65,19 @@ impl Gas {
         }
         #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
         let cells = self.cells as f64;
-        let constant = (16.0 * std::f64::consts::PI * RADIUS.powi(3) / (3.0 * self.filling)).cbrt();
-        let half = 0.5 * cells * constant;
+        let volume = 16.0 * std::f64::consts::PI * (RADIUS * cells).powi(3) / (3.0 * self.filling);
+        let half = 0.5 * volume.cbrt();
+        let constant = 2.0 * half / (cells - 0.5 + 0.5_f64.sqrt());
+        if constant * 0.5_f64.sqrt() <= 2.0 * RADIUS {
+            return Err(Error::Argument {
+                argument: "filling",
+                found: self.filling.to_string(),
+                remedy: format!(
+                    "{} cells an edge do not fit between the walls; give a smaller fraction or more cells",
+                    self.cells
+                ),
+            });
+        }
         let scene = Scene {
             name: format!("gas-{}", 4 * self.cells.pow(3)),
             title: Some(format!("elastic gas of {} spheres", 4 * self.cells.pow(3))),
@@ -75,7 +88,7 @@ impl Gas {
             units: Units {
                 length: LengthUnit::None,
             },
-            bodies: self.bodies(constant, half),
+            bodies: self.bodies(constant),
             effects: Effects {
                 contact: Some(Contact { restitution: 1.0 }),
                 cushions: Some(Cushions {
@@ -91,8 +104,10 @@ impl Gas {
         Ok(scene)
     }
 
-    fn bodies(&self, constant: f64, half: f64) -> Vec<Body> {
+    fn bodies(&self, constant: f64) -> Vec<Body> {
         let mut random = Random::new(self.seed);
+        #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+        let middle = 0.5 * self.cells as f64;
         let mut bodies = Vec::new();
         for cell in 0..self.cells.pow(3) {
             let corner = [
@@ -103,7 +118,7 @@ impl Gas {
             for place in BASIS {
                 #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
                 let position =
-                    [0, 1, 2].map(|axis| constant * (corner[axis] as f64 + place[axis]) - half);
+                    [0, 1, 2].map(|axis| constant * (corner[axis] as f64 + place[axis] - middle));
                 bodies.push(Body {
                     name: format!("s{}", bodies.len()),
                     mass: 1.0,
@@ -121,5 +136,43 @@ impl Gas {
             body.velocity = [0, 1, 2].map(|axis| body.velocity[axis] - mean[axis]);
         }
         bodies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lattice used to fill the whole box, so that the outer spheres stood in the walls.
+    #[test]
+    fn every_sphere_starts_free_of_walls_and_neighbours() {
+        for (cells, filling) in [(1, 0.2), (2, 0.4), (6, 0.49), (14, 0.6)] {
+            let recipe = Gas {
+                cells,
+                filling,
+                seed: 1,
+            };
+            let scene = recipe.scene().unwrap();
+            assert!(
+                scene.warnings().is_empty(),
+                "{cells}: {:?}",
+                scene.warnings()
+            );
+            let half = scene.effects.cushions.unwrap().half_width;
+            let spheres = scene.bodies.len() as f64 * std::f64::consts::PI / 6.0;
+            assert!((spheres / (2.0 * half).powi(3) - filling).abs() < 1e-12);
+        }
+        let tight = Gas {
+            cells: 2,
+            filling: 0.6,
+            seed: 1,
+        };
+        assert!(
+            tight
+                .scene()
+                .unwrap_err()
+                .to_string()
+                .contains("between the walls")
+        );
     }
 }

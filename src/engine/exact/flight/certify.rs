@@ -1,0 +1,300 @@
+//! How many digits a run vouches for, and where the model itself has no single answer.
+
+use super::law::State;
+use super::order::TieOrder;
+use super::simulation::{FlightSimulation, Simultaneous};
+use crate::engine::Simulation;
+use crate::engine::exact::real::Real;
+use crate::engine::exact::wide::Wide;
+use crate::error::Result;
+use crate::recording::{Recording, initial_states};
+use crate::scene::Scene;
+
+/// Inputs are moved by this share to see how errors grow: thousands of roundings.
+const NUDGE: f64 = 8.077_935_669_463_161e-28; // 2^-90
+
+/// An event may add this many roundings to a run's error.
+const ROUNDINGS_AN_EVENT: f64 = 64.0;
+
+/// Room between what two moved runs show and what is claimed.
+const SAFETY: f64 = 10.0;
+
+/// No more digits are claimed: the published numbers are doubles.
+const DIGITS_MAX: f64 = 15.0;
+
+/// Answers that differ by less than this share of the scene's size are the same.
+const SAME: f64 = 1e-9;
+
+/// Digits that a sample vouches for, of positions and velocities alike those of the worst body.
+///
+/// Units: decimal digits relative to the diagonal of the box of all positions, and to the
+/// largest speed. Valid for: the rule's order of simultaneous events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Digits {
+    /// Of positions.
+    pub position: u8,
+    /// Of velocities.
+    pub velocity: u8,
+}
+
+/// From here on another order of simultaneous events gives another answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Undetermined {
+    /// Time of the events, s.
+    pub time: f64,
+    /// Bodies that have two events at once.
+    pub bodies: Vec<usize>,
+    /// Largest distance between two answers for one body at one sample, scene length unit.
+    pub spread: f64,
+}
+
+/// A recording with what it vouches for.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    /// The wide run, rounded to doubles.
+    pub recording: Recording,
+    /// Shape: `[sample]`.
+    pub digits: Vec<Digits>,
+    /// Where the model has no single answer, if anywhere.
+    pub undetermined: Option<Undetermined>,
+}
+
+/// Runs a scene and vouches for digits.
+///
+/// Method: the run is made in double-doubles; three more go along with it, sample by sample:
+/// one in doubles and two in double-doubles from inputs moved by 2^-90. How far these part is how
+/// errors grow; the claim leaves room for 64 roundings an event and a factor of 10. Where
+/// events coincide, runs with other orders of them are compared.
+///
+/// # Errors
+/// As [`FlightSimulation::new`].
+pub fn certified(scene: &Scene) -> Result<Certified> {
+    let mut run = FlightSimulation::<Wide>::new(scene, TieOrder::Rule)?;
+    let mut moved = [1, 2].map(|seed| FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed));
+    let mut double = FlightSimulation::<f64>::new(scene, TieOrder::Rule)?;
+    let mut recording = Recording::at_start("exact", scene);
+    let mut states = initial_states(scene);
+    let mut growth = vec![Parting::default()];
+    for sample in 1..=scene.sample_count() {
+        if let Some(outcome) = run.advance_to(sample, Some(&mut recording.events)) {
+            recording.outcome = outcome;
+            break;
+        }
+        run.state_into(&mut states);
+        recording.push(&states);
+        recording.events.end_interval();
+        let mut parting = Parting::default();
+        for other in &mut moved {
+            let Ok(other) = other else { continue };
+            // A moved run that has ended vouches for nothing any more.
+            if other.advance_to(sample, None).is_some() {
+                parting = Parting::unknown();
+            }
+            parting = parting.with(&run, other.states());
+        }
+        let events = ROUNDINGS_AN_EVENT * Wide::EPSILON * float(run.event_count());
+        let mut parting = parting.scaled(SAFETY * (events / NUDGE).max(1.0));
+        let ended = double.advance_to(sample, None).is_some();
+        parting.in_doubles = if ended {
+            f64::INFINITY
+        } else {
+            Parting::default()
+                .with(&run, double.states().map(|state| widened(&state)))
+                .position
+        };
+        growth.push(parting);
+    }
+    recording.work = run.work();
+    let scale = Scale::of(&recording);
+    let undetermined = if run.simultaneous().is_empty() {
+        None
+    } else {
+        undetermined(scene, &recording, &growth, &scale, run.simultaneous())?
+    };
+    Ok(Certified {
+        digits: digits(&growth, &scale),
+        recording,
+        undetermined,
+    })
+}
+
+/// How far other runs are from the run, over all bodies.
+#[derive(Debug, Clone, Copy, Default)]
+struct Parting {
+    position: f64,
+    velocity: f64,
+    in_doubles: f64,
+}
+
+impl Parting {
+    fn unknown() -> Self {
+        Self {
+            position: f64::INFINITY,
+            velocity: f64::INFINITY,
+            in_doubles: f64::INFINITY,
+        }
+    }
+
+    fn with(
+        mut self,
+        run: &FlightSimulation<Wide>,
+        other: impl Iterator<Item = State<Wide>>,
+    ) -> Self {
+        for (a, b) in run.states().zip(other) {
+            let position = (a.position - b.position).map(Real::to_f64).norm();
+            let velocity = (a.velocity - b.velocity).map(Real::to_f64).norm();
+            self.position = self.position.max(position);
+            self.velocity = self.velocity.max(velocity);
+        }
+        self
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            position: self.position * factor,
+            velocity: self.velocity * factor,
+            in_doubles: self.in_doubles,
+        }
+    }
+}
+
+/// The lengths and speeds against which digits count.
+#[derive(Debug, Clone, Copy)]
+struct Scale {
+    diagonal: f64,
+    speed: f64,
+    coordinate: f64,
+}
+
+impl Scale {
+    fn of(recording: &Recording) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let (mut speed, mut coordinate) = (0.0_f64, 0.0_f64);
+        for state in recording.samples().flatten() {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(state.position[axis]);
+                high[axis] = high[axis].max(state.position[axis]);
+            }
+            speed = speed.max(state.velocity.norm());
+            coordinate = coordinate.max(state.position.norm());
+        }
+        let sides = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        Self {
+            diagonal: sides.iter().map(|side| side * side).sum::<f64>().sqrt(),
+            speed,
+            coordinate,
+        }
+    }
+}
+
+/// Digits from errors; once a digit of a position is lost it does not come back.
+///
+/// A velocity may differ at one sample alone, when an impact falls on it: the sample claims
+/// nothing then, but its neighbours do.
+fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
+    let rounding = 0.5 * f64::EPSILON;
+    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
+    let mut digits = Vec::with_capacity(growth.len());
+    for (sample, parting) in growth.iter().enumerate() {
+        position = position.max(parting.position);
+        let around = &growth[sample.saturating_sub(1)..growth.len().min(sample + 2)];
+        let lasting = around
+            .iter()
+            .fold(f64::INFINITY, |least, near| least.min(near.velocity));
+        velocity = velocity.max(lasting);
+        let of_velocity = velocity.max(parting.velocity);
+        digits.push(Digits {
+            position: count(position + rounding * scale.coordinate, scale.diagonal),
+            velocity: count(of_velocity + rounding * scale.speed, scale.speed),
+        });
+    }
+    digits
+}
+
+/// Whole digits of something known up to `error`.
+fn count(error: f64, size: f64) -> u8 {
+    if error == 0.0 {
+        return 15;
+    }
+    let digits = -(error / size).log10();
+    if digits.is_nan() {
+        return 0;
+    }
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and 15"
+    )]
+    let whole = digits.floor().clamp(0.0, DIGITS_MAX) as u8;
+    whole
+}
+
+/// Runs other orders of simultaneous events, and tells where they first part.
+fn undetermined(
+    scene: &Scene,
+    recording: &Recording,
+    growth: &[Parting],
+    scale: &Scale,
+    simultaneous: &[Simultaneous],
+) -> Result<Option<Undetermined>> {
+    let mut first = usize::MAX;
+    let mut spread = 0.0_f64;
+    for order in [
+        TieOrder::Backwards,
+        TieOrder::Drawn(1),
+        TieOrder::Drawn(2),
+        TieOrder::Drawn(3),
+    ] {
+        let mut other = FlightSimulation::<Wide>::new(scene, order)?;
+        let mut states = initial_states(scene);
+        for sample in 1..recording.sample_count() {
+            if other.advance_to(sample, None).is_some() {
+                break;
+            }
+            other.state_into(&mut states);
+            let pairs = states.iter().zip(recording.sample(sample));
+            let apart = pairs
+                .map(|(a, b)| (a.position - b.position).norm())
+                .fold(0.0, f64::max);
+            // Other orders also move events by the width of an instant, some hundred roundings
+            // of a double, which grow as those of the run in doubles do.
+            let same = (SAME * scale.diagonal).max(1e4 * growth[sample].in_doubles);
+            if apart > same {
+                first = first.min(sample);
+                spread = spread.max(apart);
+            }
+        }
+    }
+    if first == usize::MAX {
+        return Ok(None);
+    }
+    let before = |noted: &&Simultaneous| noted.time <= scene.sample_time(first);
+    let Some(culprit) = simultaneous.iter().rfind(before) else {
+        return Ok(None);
+    };
+    let near = 1e-9 * scene.duration;
+    let mut bodies: Vec<_> = simultaneous
+        .iter()
+        .filter(|noted| (noted.time - culprit.time).abs() <= near)
+        .map(|noted| noted.body)
+        .collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    Ok(Some(Undetermined {
+        time: culprit.time,
+        bodies,
+        spread,
+    }))
+}
+
+fn widened(state: &State<f64>) -> State<Wide> {
+    State {
+        position: state.position.map(Wide::from_f64),
+        velocity: state.velocity.map(Wide::from_f64),
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn float(count: u64) -> f64 {
+    count as f64
+}

@@ -1,0 +1,263 @@
+//! Cells: which spheres are near enough to meet before one of them changes its cell.
+
+use nalgebra::Vector3;
+
+use crate::engine::exact::real::Real;
+
+/// No body.
+const NONE: u32 = u32::MAX;
+
+/// Cells are this much wider than the largest sphere, so that rounding in the place of a face
+/// cannot hide a contact across two of them.
+const MARGIN: f64 = 1.0 + 1e-6;
+
+/// The face of a cell through which a sphere leaves it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Face {
+    /// The axis that it is normal to.
+    pub axis: usize,
+    /// Whether it is the one towards larger coordinates.
+    pub upper: bool,
+}
+
+/// Where a body is: its cell in endless space, and the one that stands for it in the table.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    cell: [i32; 3],
+    folded: [u32; 3],
+}
+
+/// Cubic cells at least as wide as the largest sphere, in a table that repeats in space.
+///
+/// Spheres in contact are in the same cell or in neighbours. As the table repeats, space may be
+/// endless; cells far apart that share a place in the table cost time but hide nothing.
+/// Source: Alder and Wainwright 1959; Smallenburg 2022, section 2.
+#[derive(Debug, Clone)]
+pub(super) struct Grid<R: Real> {
+    side: R,
+    origin: Vector3<R>,
+    counts: [u32; 3],
+    heads: Vec<u32>,
+    next: Vec<u32>,
+    places: Vec<Place>,
+}
+
+impl<R: Real> Grid<R> {
+    /// Cells for spheres at these places, at most about one a sphere.
+    pub fn new(positions: &[Vector3<R>], radius_max: R) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for position in positions {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(position[axis].to_f64());
+                high[axis] = high[axis].max(position[axis].to_f64());
+            }
+        }
+        let diameter = 2.0 * MARGIN * radius_max.to_f64();
+        let extent = [0, 1, 2].map(|axis| high[axis] - low[axis] + diameter);
+        let side = side_of(&extent, diameter, positions.len());
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "side_of keeps the count of cells near the count of bodies"
+        )]
+        let counts = extent.map(|length| (length / side).ceil().clamp(1.0, 1e6) as u32);
+        let total = counts.iter().map(|n| *n as usize).product();
+        let mut grid = Self {
+            side: R::from_f64(side),
+            origin: Vector3::from(low.map(|x| R::from_f64(x - 0.5 * diameter))),
+            counts,
+            heads: vec![NONE; total],
+            next: vec![NONE; positions.len()],
+            places: vec![Place::default(); positions.len()],
+        };
+        for (body, position) in positions.iter().enumerate() {
+            grid.place(body, position);
+        }
+        grid
+    }
+
+    fn place(&mut self, body: usize, position: &Vector3<R>) {
+        let mut place = Place::default();
+        for axis in 0..3 {
+            let cells = ((position[axis] - self.origin[axis]) / self.side).to_f64();
+            #[allow(clippy::cast_possible_truncation, reason = "saturates far outside")]
+            let cell = cells.floor() as i32;
+            place.cell[axis] = cell;
+            #[allow(
+                clippy::cast_possible_wrap,
+                clippy::cast_sign_loss,
+                reason = "1e6 at most"
+            )]
+            let folded = cell.rem_euclid(self.counts[axis] as i32) as u32;
+            place.folded[axis] = folded;
+        }
+        self.places[body] = place;
+        self.link(body);
+    }
+
+    /// Whether an axis has cells to cross at all.
+    pub fn is_divided(&self, axis: usize) -> bool {
+        self.counts[axis] > 1
+    }
+
+    /// Coordinate of a face of a body's present cell.
+    #[inline]
+    pub fn coordinate(&self, body: usize, face: Face) -> R {
+        let cell = self.places[body].cell[face.axis] + i32::from(face.upper);
+        self.origin[face.axis] + self.side * R::from_f64(f64::from(cell))
+    }
+
+    /// Puts a body into the cell beyond that face.
+    pub fn cross(&mut self, body: usize, face: Face) {
+        self.unlink(body);
+        let (place, count) = (&mut self.places[body], self.counts[face.axis]);
+        let (cell, folded) = (&mut place.cell[face.axis], &mut place.folded[face.axis]);
+        if face.upper {
+            *cell += 1;
+            *folded = up(*folded, count);
+        } else {
+            *cell -= 1;
+            *folded = down(*folded, count);
+        }
+        self.link(body);
+    }
+
+    /// Visits every other body in the cells around that of `body`; with a face, only those
+    /// that came into reach by crossing it.
+    #[inline]
+    pub fn for_each_near(&self, body: usize, entered: Option<Face>, mut visit: impl FnMut(usize)) {
+        let folded = self.places[body].folded;
+        let mut columns = [0, 1, 2].map(|axis| around(folded[axis], self.counts[axis]));
+        if let Some(Face { axis, upper }) = entered
+            && self.counts[axis] > 2
+        {
+            let column = columns[axis].0[if upper { 2 } else { 1 }];
+            columns[axis] = ([column; 3], 1);
+        }
+        let [xs, ys, zs] = &columns;
+        for z in &zs.0[..zs.1] {
+            for y in &ys.0[..ys.1] {
+                let row = (z * self.counts[1] + y) as usize * self.counts[0] as usize;
+                for x in &xs.0[..xs.1] {
+                    let mut other = self.heads[row + *x as usize];
+                    while other != NONE {
+                        if other as usize != body {
+                            visit(other as usize);
+                        }
+                        other = self.next[other as usize];
+                    }
+                }
+            }
+        }
+    }
+
+    fn slot(&self, body: usize) -> usize {
+        let [x, y, z] = self.places[body].folded;
+        (z * self.counts[1] + y) as usize * self.counts[0] as usize + x as usize
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "fewer bodies than 2^32")]
+    fn link(&mut self, body: usize) {
+        let slot = self.slot(body);
+        self.next[body] = self.heads[slot];
+        self.heads[slot] = body as u32;
+    }
+
+    fn unlink(&mut self, body: usize) {
+        let slot = self.slot(body);
+        let after = self.next[body];
+        if self.heads[slot] as usize == body {
+            self.heads[slot] = after;
+            return;
+        }
+        let mut other = self.heads[slot] as usize;
+        while self.next[other] as usize != body {
+            other = self.next[other] as usize;
+        }
+        self.next[other] = after;
+    }
+}
+
+/// Width of a cell: that of a sphere, or more where so many cells would be mostly empty.
+fn side_of(extent: &[f64; 3], diameter: f64, bodies: usize) -> f64 {
+    // Axes along which nothing spreads hold one cell; the others share the count of bodies.
+    let spread: Vec<f64> = extent
+        .iter()
+        .copied()
+        .filter(|x| *x > 2.0 * diameter)
+        .collect();
+    #[allow(clippy::cast_precision_loss, reason = "a size, not a result")]
+    let (volume, count, axes) = (
+        spread.iter().map(|x| x.log2()).sum::<f64>(),
+        (bodies as f64).log2(),
+        spread.len().max(1) as f64,
+    );
+    diameter.max(((volume - count) / axes).exp2())
+}
+
+#[inline]
+fn up(folded: u32, count: u32) -> u32 {
+    if folded + 1 == count { 0 } else { folded + 1 }
+}
+
+#[inline]
+fn down(folded: u32, count: u32) -> u32 {
+    if folded == 0 { count - 1 } else { folded - 1 }
+}
+
+/// The distinct places of a row within one cell of a place: itself, below, above.
+#[inline]
+fn around(folded: u32, count: u32) -> ([u32; 3], usize) {
+    let places = [folded, down(folded, count), up(folded, count)];
+    (places, count.min(3) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(grid: &Grid<f64>, body: usize) -> Vec<usize> {
+        let mut found = Vec::new();
+        grid.for_each_near(body, None, |other| found.push(other));
+        found.sort_unstable();
+        found
+    }
+
+    #[test]
+    fn neighbours_are_found_across_cells_and_once_each() {
+        let places: Vec<_> = (0..64)
+            .map(|i| Vector3::new(f64::from(i % 8) * 2.0, f64::from(i / 8) * 2.0, 0.0))
+            .collect();
+        let grid = Grid::new(&places, 1.0);
+        for (body, place) in places.iter().enumerate() {
+            let found = near(&grid, body);
+            assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
+            for (other, at) in places.iter().enumerate() {
+                let touching = other != body && (place - at).norm() < 2.01;
+                assert!(!touching || found.contains(&other), "{body} {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_body_that_leaves_is_found_in_its_new_cell() {
+        let places = vec![
+            Vector3::new(0.0, 0.0, 0.0),
+            Vector3::new(9.0, 0.0, 0.0),
+            Vector3::new(30.0, 0.0, 0.0),
+        ];
+        let mut grid = Grid::new(&places, 1.0);
+        assert!(near(&grid, 0).is_empty());
+        let face = Face {
+            axis: 0,
+            upper: true,
+        };
+        while !near(&grid, 0).contains(&1) {
+            grid.cross(0, face);
+            assert!(grid.coordinate(0, face) < 30.0, "passed it by");
+        }
+        let mut entered = Vec::new();
+        grid.for_each_near(0, Some(face), |other| entered.push(other));
+        assert_eq!(entered, [1]);
+    }
+}

@@ -1,0 +1,25 @@
+//! Scenes without attraction and springs: flights in closed form from event to event.
+//!
+//! `law` says how a body flies; `encounter`, `plane` and `search` when it meets something;
+//! `plan` what comes next for one body, `queue` for all; `world` lets it happen. `grid` keeps
+//! the number of pairs to look at small, `order` holds the rule for simultaneous events.
+
+mod certify;
+mod encounter;
+mod grid;
+mod law;
+mod model;
+mod order;
+mod perturb;
+mod plan;
+mod plane;
+mod queue;
+mod runaway;
+mod search;
+mod simulation;
+mod turn;
+mod world;
+
+pub use certify::{Certified, Digits, Undetermined, certified};
+pub use order::TieOrder;
+pub use simulation::{FlightSimulation, Simultaneous};

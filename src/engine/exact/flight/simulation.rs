@@ -1,0 +1,234 @@
+//! From event to event, from sample to sample.
+
+use super::grid::Face;
+use super::law::State;
+use super::model::{Model, accept, start};
+use super::order::TieOrder;
+use super::plan::Planned;
+use super::queue::Queue;
+use super::runaway::Runaway;
+use super::world::World;
+use crate::engine::Simulation;
+use crate::engine::exact::real::{Real, vector};
+use crate::error::Result;
+use crate::physics::BodyState;
+use crate::recording::{EventLog, Outcome, Work};
+use crate::scene::Scene;
+
+/// What a body does next, in the model and in the table of cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Agenda<R> {
+    /// Its next event.
+    pub planned: Planned<R>,
+    /// When it leaves its cell, s.
+    pub crossing: R,
+    /// Through which face it does.
+    pub face: Face,
+}
+
+impl<R: Real> Agenda<R> {
+    /// When the next of the two is due, s.
+    #[inline]
+    pub fn due(&self) -> R {
+        if self.crossing < self.planned.time {
+            self.crossing
+        } else {
+            self.planned.time
+        }
+    }
+}
+
+/// Events that fall on one instant and share a body: the model's rule decides their order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Simultaneous {
+    /// Time, s.
+    pub time: f64,
+    /// The body that they share.
+    pub body: usize,
+}
+
+/// The event-driven engine for scenes without attraction and springs, in closed form.
+///
+/// Between events nothing is computed; an event touches one or two bodies. States are exact but
+/// for the rounding of the scalar.
+/// Valid for: contact, cushions, drag, uniform gravity, and rest without gravity.
+/// Source: Alder and Wainwright 1959; Smallenburg 2022 (arXiv 2201.01100).
+#[derive(Debug, Clone)]
+pub struct FlightSimulation<R: Real> {
+    pub(super) world: World<R>,
+    pub(super) agendas: Vec<Agenda<R>>,
+    pub(super) queue: Queue<R>,
+    sample: usize,
+    pub(super) events: u64,
+    pub(super) instant: R,
+    pub(super) cursor: Option<u64>,
+    pub(super) runaway: Runaway,
+    pub(super) simultaneous: Vec<Simultaneous>,
+    pub(super) crowd: Vec<usize>,
+    pub(super) slowed: Vec<usize>,
+}
+
+impl<R: Real> FlightSimulation<R> {
+    /// Puts a scene at its start.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::error::Error::Scene) for what is no scene,
+    /// [`Error::EngineCannot`](crate::error::Error::EngineCannot) for what has no exact meaning.
+    pub fn new(scene: &Scene, order: TieOrder) -> Result<Self> {
+        accept(scene)?;
+        Ok(Self::with(Model::of(scene), order, &start(scene)))
+    }
+
+    /// The same with every event searched for, closed form or not: the second path of the tests.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn searching(scene: &Scene, order: TieOrder) -> Result<Self> {
+        accept(scene)?;
+        let mut model = Model::of(scene);
+        model.law = model.law.without_shortcut();
+        Ok(Self::with(model, order, &start(scene)))
+    }
+
+    /// The same with every input moved by a relative `size`, up or down by lot from a seed.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(super) fn perturbed(scene: &Scene, size: f64, seed: u64) -> Result<Self> {
+        accept(scene)?;
+        let mut model = Model::<R>::of(scene);
+        let mut states = start(scene);
+        super::perturb::perturb(&mut model, &mut states, size, seed);
+        Ok(Self::with(model, TieOrder::Rule, &states))
+    }
+
+    fn with(model: Model<R>, order: TieOrder, states: &[State<R>]) -> Self {
+        let mut simulation = Self {
+            agendas: Vec::new(),
+            queue: Queue::new(states.len()),
+            sample: 0,
+            events: 0,
+            instant: R::from_f64(f64::NEG_INFINITY),
+            cursor: None,
+            runaway: Runaway::new(model.duration.to_f64(), states.len()),
+            simultaneous: Vec::new(),
+            crowd: Vec::new(),
+            slowed: Vec::new(),
+            world: World::new(model, order, states, R::zero()),
+        };
+        simulation.plan_all();
+        simulation
+    }
+
+    /// Instants at which events that share a body are simultaneous, as far as inputs are sure.
+    #[must_use]
+    pub fn simultaneous(&self) -> &[Simultaneous] {
+        &self.simultaneous
+    }
+
+    /// How many events of the model there have been.
+    #[must_use]
+    pub fn event_count(&self) -> u64 {
+        self.events
+    }
+
+    /// Present time of the last sample reached, s.
+    #[allow(clippy::cast_precision_loss, reason = "4e7 samples at most")]
+    fn sample_time(&self) -> R {
+        self.world.model.sample_every * R::from_f64(self.sample as f64)
+    }
+
+    /// States at the last sample reached, in the engine's own scalar.
+    pub(super) fn states(&self) -> impl Iterator<Item = State<R>> {
+        let time = self.sample_time();
+        (0..self.agendas.len()).map(move |body| self.world.state_at(body, time))
+    }
+
+    fn plan_all(&mut self) {
+        let nothing = Agenda {
+            planned: Planned::nothing(),
+            crossing: R::from_f64(f64::INFINITY),
+            face: Face {
+                axis: 0,
+                upper: true,
+            },
+        };
+        let bodies = self.world.balls.len();
+        self.agendas = vec![nothing; bodies];
+        for body in 0..bodies {
+            self.plan_crossing(body);
+            self.plan(body);
+        }
+    }
+
+    pub(super) fn plan(&mut self, body: usize) {
+        self.agendas[body].planned = self.world.plan(body);
+        self.enqueue(body);
+    }
+
+    pub(super) fn plan_crossing(&mut self, body: usize) {
+        if self.world.grid.is_some() {
+            let (crossing, face) = self.world.plan_crossing(body);
+            self.agendas[body].crossing = crossing;
+            self.agendas[body].face = face;
+        }
+    }
+
+    /// Plans a body that has just been put on a new flight.
+    pub(super) fn replan(&mut self, body: usize) {
+        self.plan_crossing(body);
+        self.plan(body);
+    }
+
+    #[inline]
+    pub(super) fn enqueue(&mut self, body: usize) {
+        self.queue.set(body, self.agendas[body].due());
+    }
+}
+
+impl<R: Real> Simulation for FlightSimulation<R> {
+    /// An event at the instant of a sample comes before it.
+    fn advance_to(&mut self, sample: usize, mut log: Option<&mut EventLog>) -> Option<Outcome> {
+        if sample <= self.sample {
+            return None;
+        }
+        self.sample = sample;
+        let time = self.sample_time() + self.world.tie;
+        self.run_to(time, &mut log)
+    }
+
+    fn state_into(&self, into: &mut [BodyState]) {
+        for (state, mine) in into.iter_mut().zip(self.states()) {
+            *state = BodyState {
+                position: mine.position.map(Real::to_f64),
+                velocity: mine.velocity.map(Real::to_f64),
+            };
+        }
+    }
+
+    fn set_state(&mut self, sample: usize, states: &[BodyState]) {
+        self.sample = sample;
+        let states: Vec<_> = states
+            .iter()
+            .map(|state| State {
+                position: vector(state.position.into()),
+                velocity: vector(state.velocity.into()),
+            })
+            .collect();
+        let (now, looked) = (self.sample_time(), self.world.pair_tests);
+        self.world = World::new(self.world.model.clone(), self.world.order, &states, now);
+        self.world.pair_tests = looked;
+        self.instant = R::from_f64(f64::NEG_INFINITY);
+        self.cursor = None;
+        self.plan_all();
+    }
+
+    /// Steps are events; between them there are none.
+    fn work(&self) -> Work {
+        Work {
+            steps: self.events,
+            pair_tests: self.world.pair_tests,
+            force_evaluations: 0,
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Taking the next event: which one among simultaneous ones, and what it does.
+
+use super::order::INTERNAL;
+use super::plan::Deed;
+use super::simulation::{FlightSimulation, Simultaneous};
+use super::world::Impact;
+use crate::engine::exact::real::Real;
+use crate::recording::{Event, EventKind, EventLog, Outcome};
+
+/// At most so many instants with simultaneous events are remembered, from the first on.
+const SIMULTANEOUS_KEPT: usize = 64;
+
+impl<R: Real> FlightSimulation<R> {
+    /// All events up to a time. Gives the outcome if they never end.
+    pub(super) fn run_to(&mut self, time: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
+        loop {
+            let (due, first) = self.queue.first();
+            if !(due <= time) {
+                return None;
+            }
+            let near = due + self.world.model.near;
+            let body = if self.queue.is_crowded(near) {
+                let Some(chosen) = self.choose(due, near) else {
+                    continue;
+                };
+                chosen
+            } else {
+                first
+            };
+            if let Some(outcome) = self.take(body, due, log) {
+                return Some(outcome);
+            }
+        }
+    }
+
+    /// The body whose event goes first of all that are due together; none if a plan among them
+    /// was void, which has then been made anew.
+    ///
+    /// The model's rule goes through contacts, cushions and rests in rounds: an event that was
+    /// already passed in this round waits for the next one.
+    fn choose(&mut self, due: R, near: R) -> Option<usize> {
+        let mut crowd = std::mem::take(&mut self.crowd);
+        self.queue.up_to(near, &mut crowd);
+        let void = crowd.iter().copied().find(|body| self.is_void(*body));
+        if let Some(body) = void {
+            self.plan(body);
+            self.crowd = crowd;
+            return None;
+        }
+        self.note_simultaneous(&crowd, near);
+        let limit = due + self.world.tie;
+        let passed = self
+            .cursor
+            .filter(|_| due <= self.instant + self.world.tie)
+            .map_or(0, |rank| rank + 1);
+        let turn = |body: &usize| {
+            let planned = &self.agendas[*body].planned;
+            let rank = if planned.time <= limit {
+                planned.rank
+            } else {
+                INTERNAL
+            };
+            (rank < passed, rank, *body)
+        };
+        let chosen = crowd
+            .iter()
+            .copied()
+            .filter(|body| self.agendas[*body].due() <= limit)
+            .min_by_key(turn);
+        self.crowd = crowd;
+        chosen
+    }
+
+    /// Whether a body's plan was made for a partner that has flown on otherwise.
+    fn is_void(&self, body: usize) -> bool {
+        let planned = &self.agendas[body].planned;
+        match planned.deed {
+            Deed::Event(EventKind::Contact { a, b }) => {
+                let partner = if a == body { b } else { a };
+                self.world.balls[partner].count != planned.partner_count
+            }
+            Deed::Event(EventKind::Cushion { .. } | EventKind::Rest { .. })
+            | Deed::PlanAgain
+            | Deed::Nothing => false,
+        }
+    }
+
+    fn note_simultaneous(&mut self, crowd: &[usize], near: R) {
+        let mut events = Vec::new();
+        for body in crowd {
+            let planned = &self.agendas[*body].planned;
+            if let Deed::Event(kind) = planned.deed
+                && planned.time <= near
+                && !events.contains(&kind)
+            {
+                events.push(kind);
+            }
+        }
+        let mut seen = Vec::new();
+        for kind in events {
+            let (first, second) = kind.bodies();
+            for body in std::iter::once(first).chain(second) {
+                if seen.contains(&body) {
+                    self.remember_simultaneous(near, body);
+                }
+                seen.push(body);
+            }
+        }
+    }
+
+    fn remember_simultaneous(&mut self, time: R, body: usize) {
+        let noted = Simultaneous {
+            time: time.to_f64(),
+            body,
+        };
+        if self.simultaneous.len() < SIMULTANEOUS_KEPT && self.simultaneous.last() != Some(&noted) {
+            self.simultaneous.push(noted);
+        }
+    }
+
+    /// Takes what a body has next: its event, a new plan, or a change of cell.
+    fn take(&mut self, body: usize, due: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
+        let agenda = self.agendas[body];
+        self.world.now = self.world.now.larger(due);
+        if agenda.crossing + self.world.tie < agenda.planned.time {
+            self.cross(body);
+            return None;
+        }
+        self.world.now = self.world.now.larger(agenda.planned.time);
+        if self.is_void(body) {
+            self.plan(body);
+            return None;
+        }
+        let approach = match agenda.planned.deed {
+            Deed::Event(kind) => {
+                if agenda.planned.is_crowded {
+                    self.remember_simultaneous(agenda.planned.time, body);
+                }
+                self.advance_round(agenda.planned.rank);
+                let impact = self.happen(kind);
+                if let Some(impact) = impact {
+                    self.note(kind, impact.impulse, log);
+                }
+                impact.map_or(R::zero(), |impact| impact.approach)
+            }
+            Deed::PlanAgain | Deed::Nothing => {
+                self.plan(body);
+                R::zero()
+            }
+        };
+        let runs_away = self
+            .runaway
+            .notes(self.world.now.to_f64(), approach.to_f64());
+        runs_away.then(|| self.collapse(body, agenda.planned.deed))
+    }
+
+    fn note(&mut self, kind: EventKind, impulse: R, log: &mut Option<&mut EventLog>) {
+        self.events += 1;
+        if let Some(log) = log {
+            log.push(Event {
+                time: self.world.now.to_f64(),
+                kind,
+                impulse: impulse.to_f64(),
+            });
+        }
+    }
+
+    fn collapse(&self, body: usize, deed: Deed) -> Outcome {
+        let (a, b) = match deed {
+            Deed::Event(kind) => kind.bodies(),
+            Deed::PlanAgain | Deed::Nothing => (body, None),
+        };
+        Outcome::Collapsed {
+            time: self.world.now.to_f64(),
+            a,
+            b,
+        }
+    }
+
+    /// Moves the round of simultaneous events on, or starts one.
+    fn advance_round(&mut self, rank: u64) {
+        if self.world.now > self.instant + self.world.tie {
+            self.instant = self.world.now;
+        }
+        self.cursor = Some(rank);
+    }
+
+    /// Lets an event happen; none if it comes to nothing.
+    fn happen(&mut self, kind: EventKind) -> Option<Impact<R>> {
+        match kind {
+            EventKind::Contact { a, b } => {
+                let impact = self.world.collide(a, b);
+                self.replan(a);
+                self.replan(b);
+                impact
+            }
+            EventKind::Cushion { body, wall } => {
+                let impact = self.world.bounce(body, wall);
+                self.replan(body);
+                impact
+            }
+            EventKind::Rest { body } => {
+                let mut slowed = std::mem::take(&mut self.slowed);
+                let impulse = self.world.stop(body, &mut slowed);
+                self.replan(body);
+                for other in &slowed {
+                    self.replan(*other);
+                }
+                self.slowed = slowed;
+                // A stop never follows a stop: no runaway comes of it, whatever its speed.
+                let approach = R::from_f64(f64::INFINITY);
+                Some(Impact { impulse, approach })
+            }
+        }
+    }
+
+    fn cross(&mut self, body: usize) {
+        let face = self.agendas[body].face;
+        if let Some(grid) = &mut self.world.grid {
+            grid.cross(body, face);
+        }
+        self.plan_crossing(body);
+        if self.is_void(body) {
+            self.plan(body);
+            return;
+        }
+        let kept = self.agendas[body].planned;
+        self.agendas[body].planned = self.world.plan_entering(body, &kept, face);
+        self.enqueue(body);
+    }
+}

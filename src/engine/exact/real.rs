@@ -1,0 +1,162 @@
+//! The scalar of `exact`: doubles for speed, a wider number for the digits that are published.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use nalgebra::{Scalar, Vector3};
+use num_traits::{One, Zero};
+
+/// A real number to compute with.
+///
+/// Vectors are nalgebra's, whose arithmetic and dot product need no more than these operators.
+/// Valid for: functions are good to a few units of [`EPSILON`](Self::EPSILON), relative.
+pub trait Real:
+    Scalar
+    + Copy
+    + Debug
+    + PartialOrd
+    + Zero
+    + One
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + Send
+    + Sync
+{
+    /// Distance from 1 to the next number, as a double.
+    const EPSILON: f64;
+
+    /// The same number; every double is one.
+    fn from_f64(value: f64) -> Self;
+
+    /// The nearest double.
+    fn to_f64(self) -> f64;
+
+    /// Square root; not a number below 0.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// `exp(x) - 1`, accurate near 0 too.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+
+    /// `ln(1 + x)`, accurate near 0 too. Valid for: x above -1.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+
+    /// `a b - c d`, as accurate as its inputs allow even where the products nearly cancel.
+    #[must_use]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+
+    /// Whether it is a finite number.
+    fn is_finite(self) -> bool {
+        self.to_f64().is_finite()
+    }
+
+    /// Size without sign.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self < Self::zero() { -self } else { self }
+    }
+
+    /// The larger of two.
+    #[must_use]
+    fn larger(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+
+    /// `exp(x)`. Valid for: any x, with relative accuracy.
+    #[must_use]
+    fn exp(self) -> Self {
+        self.exp_m1() + Self::one()
+    }
+
+    /// `ln(x)`. Valid for: x above 0.
+    #[must_use]
+    fn ln(self) -> Self {
+        (self - Self::one()).ln_1p()
+    }
+
+    /// Half of it.
+    #[must_use]
+    fn half(self) -> Self {
+        self * Self::from_f64(0.5)
+    }
+
+    /// Twice of it.
+    #[must_use]
+    fn twice(self) -> Self {
+        self + self
+    }
+}
+
+impl Real for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline]
+    fn exp_m1(self) -> Self {
+        self.exp_m1()
+    }
+
+    #[inline]
+    fn ln_1p(self) -> Self {
+        self.ln_1p()
+    }
+
+    /// Kahan's: the error of the second product is put back.
+    #[inline]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        let second = c * d;
+        let error = c.mul_add(d, -second);
+        a.mul_add(b, -second) - error
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        self.exp()
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        self.ln()
+    }
+}
+
+/// A vector of that scalar with these components.
+#[must_use]
+pub fn vector<R: Real>(components: [f64; 3]) -> Vector3<R> {
+    Vector3::from(components.map(R::from_f64))
+}
+
+/// Euclidean length.
+#[must_use]
+#[inline]
+pub fn length<R: Real>(v: &Vector3<R>) -> R {
+    v.dot(v).sqrt()
+}

@@ -1,0 +1,237 @@
+//! Twice the digits of a double: an unevaluated sum of two.
+
+use std::cmp::Ordering;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+use twofloat::TwoFloat;
+
+use super::real::Real;
+
+/// A double-double number, about 31 digits, with the exponents of a double.
+///
+/// Sum, product and square root are those of the crate `twofloat` (2.2e-32 and less, measured;
+/// Joldes, Muller, Popescu 2017). Its quotient is good to 1e-16 only (version 0.8.4 takes the
+/// residual of the reciprocal without a fused product) and so are its exponential and
+/// logarithm, so that these three are made here from sums and products.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wide(TwoFloat);
+
+/// The natural logarithm of 2, to twice the digits.
+const LN_2: [f64; 2] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17];
+
+impl Wide {
+    /// The sum of two doubles, exactly.
+    #[must_use]
+    pub fn sum(a: f64, b: f64) -> Self {
+        Self(TwoFloat::new_add(a, b))
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self(self.0 * factor)
+    }
+
+    /// `exp(x) - 1` by its series. Valid for: `|x| <= 1/40`, where 12 terms leave 1e-30 of x.
+    fn exp_m1_series(self) -> Self {
+        // Horner's scheme: x (1 + x/2 (1 + x/3 (1 + ...))).
+        let mut sum = Self::one();
+        for term in (2..=17_i32).rev() {
+            sum = Self::one() + self * sum.divided_by(f64::from(term));
+        }
+        self * sum
+    }
+
+    fn divided_by(self, divisor: f64) -> Self {
+        Self(self.0 / divisor)
+    }
+}
+
+impl Real for Wide {
+    const EPSILON: f64 = 4.930_380_657_631_324e-32;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        Self(TwoFloat::from(value))
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.0.hi() + self.0.lo()
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    /// Reduction by powers of 2, the series, and four doublings `e(2x) = e(x) (e(x) + 2)`.
+    fn exp_m1(self) -> Self {
+        let size = self.0.hi();
+        if !(-745.0..=709.0).contains(&size) {
+            return Self::from_f64(size.exp_m1());
+        }
+        let power = (size / LN_2[0]).round();
+        let rest = self - Self::sum(LN_2[0], LN_2[1]).scaled(power);
+        let mut result = rest.scaled(1.0 / 16.0).exp_m1_series();
+        for _ in 0..4 {
+            result *= result + Self::from_f64(2.0);
+        }
+        if power == 0.0 {
+            return result;
+        }
+        // Two factors, as 2^-745 is no double but the result may be one.
+        let [first, second] = [(power / 2.0).floor(), power - (power / 2.0).floor()];
+        let whole = (result + Self::one())
+            .scaled(first.exp2())
+            .scaled(second.exp2());
+        whole - Self::one()
+    }
+
+    /// One Newton step on [`exp_m1`](Self::exp_m1) from the double's logarithm.
+    fn ln_1p(self) -> Self {
+        let start = self.to_f64().ln_1p();
+        if !start.is_finite() || start == 0.0 {
+            return if start == 0.0 {
+                self
+            } else {
+                Self::from_f64(start)
+            };
+        }
+        let start = Self::from_f64(start);
+        let reached = start.exp_m1();
+        start + (self - reached) / (reached + Self::one())
+    }
+
+    #[inline]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        a * b - c * d
+    }
+
+    /// Without the detour over `exp(x) - 1`, which would lose the digits of a small result.
+    fn exp(self) -> Self {
+        if self.0.hi() < -0.5 {
+            return Self::one() / ((-self).exp_m1() + Self::one());
+        }
+        self.exp_m1() + Self::one()
+    }
+
+    /// One Newton step on [`exp`](Self::exp) from the double's logarithm.
+    fn ln(self) -> Self {
+        let start = self.to_f64().ln();
+        if !start.is_finite() {
+            return Self::from_f64(start);
+        }
+        let start = Self::from_f64(start);
+        start + (self * (-start).exp() - Self::one())
+    }
+}
+
+impl PartialOrd for Wide {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        match self.0.hi().partial_cmp(&other.0.hi()) {
+            Some(Ordering::Equal) => self.0.lo().partial_cmp(&other.0.lo()),
+            decided => decided,
+        }
+    }
+}
+
+impl Add for Wide {
+    type Output = Self;
+
+    /// An infinite or undefined sum keeps no lower part, so that comparisons still hold.
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl Mul for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
+impl Div for Wide {
+    type Output = Self;
+
+    /// Long division in three digits of 53 bits.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let leading = other.0.hi();
+        let first = self.0.hi() / leading;
+        let rest = self.0 - other.0 * first;
+        let second = rest.hi() / leading;
+        let rest = rest - other.0 * second;
+        let third = rest.hi() / leading;
+        Self(TwoFloat::new_add(first, second) + third)
+    }
+}
+
+impl Neg for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl AddAssign for Wide {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Wide {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Wide {
+    #[inline]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl DivAssign for Wide {
+    #[inline]
+    fn div_assign(&mut self, other: Self) {
+        *self = *self / other;
+    }
+}
+
+impl Zero for Wide {
+    #[inline]
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    #[inline]
+    fn is_zero(&self) -> bool {
+        self.0.hi() == 0.0
+    }
+}
+
+impl One for Wide {
+    #[inline]
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+}
