@@ -8,10 +8,14 @@ use std::path::{Path, PathBuf};
 use include_dir::{Dir, include_dir};
 
 use crate::error::{Error, Result};
+use crate::physics::Vector3;
 use crate::recording::{Recording, read_events, read_trajectory};
 use crate::scene::{self, Scene};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
+
+/// More names than this are no hint any more.
+const HINTS_MAX: usize = 6;
 
 /// The folder that is looked into when none is named.
 pub const REFERENCE: &str = "reference";
@@ -95,6 +99,7 @@ impl Library {
             if let Some(events) = self.file(name, "events.csv")? {
                 recording.events = read_events(&scene, events.bytes.as_slice(), &events.path)?;
             }
+            check_start(&scene, &recording, &table.path)?;
             truth = Some(recording);
         }
         let origin = self
@@ -154,7 +159,7 @@ impl Library {
             .filter(|known| known.contains(name) || name.contains(known.as_str()))
             .map(String::as_str)
             .collect();
-        let hint = if near.is_empty() || name.is_empty() {
+        let hint = if near.is_empty() || near.len() > HINTS_MAX {
             String::new()
         } else {
             format!("; did you mean {}?", near.join(" or "))
@@ -164,6 +169,23 @@ impl Library {
             hint,
         }
     }
+}
+
+/// Truth must start where the scene starts, to the rounding of its printed digits.
+fn check_start(scene: &Scene, truth: &Recording, file: &str) -> Result<()> {
+    let starts = crate::recording::initial_states(scene);
+    for ((body, ours), theirs) in scene.bodies.iter().zip(&starts).zip(truth.sample(0)) {
+        let near = |a: &Vector3, b: &Vector3| (a - b).norm() <= 1e-9 * a.norm().max(b.norm());
+        let same = near(&ours.position, &theirs.position) && near(&ours.velocity, &theirs.velocity);
+        if !same {
+            return Err(Error::Table {
+                file: file.to_owned(),
+                line: 2,
+                message: format!("`{}` starts elsewhere than in the scene", body.name),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// A text without a Markdown heading in its first line.

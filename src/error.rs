@@ -131,7 +131,7 @@ pub enum Error {
         scene: String,
     },
     /// A time step that cannot be taken.
-    #[error("time step {dt} s: {message}")]
+    #[error("time step {dt:?} s: {message}")]
     Step {
         /// The step asked for.
         dt: f64,

@@ -15,7 +15,7 @@ pub(super) struct EngineArgs {
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     /// Largest time step, s; the step taken divides the time between samples
-    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT)]
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true)]
     pub dt: f64,
 }
 

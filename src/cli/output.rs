@@ -2,6 +2,8 @@
 
 use std::fmt::Display;
 use std::io::{self, Write};
+#[cfg(unix)]
+use std::sync::Arc;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -28,7 +30,8 @@ pub(super) fn warn(text: impl Display) {
 
 /// Says why carom could not run.
 pub(super) fn complain(error: &Error) {
-    let _ = writeln!(io::stderr().lock(), "error: {error}");
+    let line = error.to_string().replace(['\n', '\r'], " ");
+    let _ = writeln!(io::stderr().lock(), "error: {line}");
 }
 
 /// A progress bar on a terminal, silence in a pipe or when asked to be quiet.
@@ -38,7 +41,7 @@ pub(super) fn progress(length: usize, quiet: bool) -> ProgressBar {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
     if let Ok(style) =
-        ProgressStyle::with_template("{wide_bar} {pos}/{len} cases, {elapsed_precise}, {msg}")
+        ProgressStyle::with_template("{wide_bar} {pos}/{len}, {elapsed_precise}, {msg}")
     {
         bar.set_style(style);
     }
@@ -57,13 +60,30 @@ pub(super) fn spinner(message: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
-/// On Ctrl-C, leaves complete files only and ends with 130, as shells expect.
+/// On Ctrl-C and its kin, leaves complete files only and ends as shells expect: 128 plus the
+/// number of the signal.
+#[cfg(unix)]
 pub(super) fn tidy_up_on_interrupt() -> Result<()> {
-    let tidy_up = || {
-        remove_unfinished();
-        std::process::exit(130);
-    };
-    ctrlc::set_handler(tidy_up).map_err(|wrong| Error::Interrupt {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+
+    let failed = |wrong: io::Error| Error::Interrupt {
         message: wrong.to_string(),
-    })
+    };
+    // A file that grows past the shell's limit: caught, the write fails and can be told.
+    signal_hook::flag::register(SIGXFSZ, Arc::default()).map_err(failed)?;
+    let mut signals =
+        signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(failed)?;
+    std::thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            remove_unfinished();
+            std::process::exit(128 + signal);
+        }
+    });
+    Ok(())
+}
+
+/// Elsewhere an interrupt ends the program at once.
+#[cfg(not(unix))]
+pub(super) fn tidy_up_on_interrupt() -> Result<()> {
+    Ok(())
 }

@@ -58,6 +58,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
         }
     }
     let folder = Folder::open(&args.out)?;
+    // Until the new index stands, none tells of cases that are no longer as it says.
+    folder.remove(|name| ["README.md", "summary.json"].contains(&name))?;
+    for case in &cases {
+        for warning in case.scene.warnings() {
+            warn(format_args!("{}: {warning}", case.scene.name));
+        }
+    }
     let bar = progress(cases.len(), args.quiet);
     let summaries = cases
         .par_iter()
@@ -88,9 +95,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     say(format_args!(
-        "{} cases on {} engines: {}",
-        summaries.len(),
-        specs.len(),
+        "{} on {}: {}",
+        counted(summaries.len(), "case"),
+        counted(specs.len(), "engine"),
         folder.path().join("README.md").display()
     ))
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
 }

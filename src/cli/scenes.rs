@@ -226,6 +226,14 @@ fn generate(recipe: &Recipe) -> Result<()> {
 
 /// Writes a scene file, but never over another one without being told to.
 fn write(file: &Path, force: bool, text: &str) -> Result<()> {
+    let name = file.file_name().filter(|_| !file.is_dir());
+    let Some(name) = name.and_then(|name| name.to_str()) else {
+        return Err(Error::Argument {
+            argument: "out",
+            found: file.display().to_string(),
+            remedy: "that is a folder; name a file in it".into(),
+        });
+    };
     if file.exists() && !force {
         return Err(Error::Exists {
             path: file.to_owned(),
@@ -234,14 +242,6 @@ fn write(file: &Path, force: bool, text: &str) -> Result<()> {
     let folder = file
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty());
-    let name = file
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned());
-    let Some(name) = name else {
-        return Err(Error::Exists {
-            path: file.to_owned(),
-        });
-    };
     Folder::open(folder.unwrap_or(Path::new(".")))?
-        .write(&name, |out| out.write_all(text.as_bytes()))
+        .write(name, |out| out.write_all(text.as_bytes()))
 }

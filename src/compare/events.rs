@@ -41,10 +41,12 @@ pub struct EventAgreement {
     pub first_disagreement: Option<Disagreement>,
 }
 
-/// For each body, the places of its impacts in a list, the next one first.
+/// The impacts of one recording, and for each body the places of those still to come.
 struct Histories<'a> {
     impacts: Vec<&'a Event>,
     next: Vec<VecDeque<usize>>,
+    /// Impacts that have been dealt with. Shape: `[impact]`.
+    done: Vec<bool>,
 }
 
 /// Impulses below this share of a recording's largest are rounding: two spheres that lie
@@ -63,16 +65,21 @@ impl<'a> Histories<'a> {
                 next[body].push_back(place);
             }
         }
-        Self { impacts, next }
+        let done = vec![false; impacts.len()];
+        Self {
+            impacts,
+            next,
+            done,
+        }
     }
 
     fn next_of(&self, body: usize) -> Option<&'a Event> {
         self.next[body].front().map(|place| self.impacts[*place])
     }
 
-    /// The same impact, if it comes next for every body that takes part; impacts of a body
-    /// within `window` of each other have no order.
-    fn take_like(&mut self, event: &Event, window: f64) -> Option<&'a Event> {
+    /// Place of the same impact, if it comes next for every body that takes part; impacts of a
+    /// body within `window` of each other have no order.
+    fn place_of(&self, event: &Event, window: f64) -> Option<usize> {
         let (first, _) = event.kind.bodies();
         let next = self.next_of(first)?.time;
         let place = self.next[first]
@@ -85,13 +92,27 @@ impl<'a> Histories<'a> {
             self.next_of(body)
                 .is_some_and(|head| time <= head.time + window)
         };
-        if !participants(event).all(is_next) {
-            return None;
-        }
+        participants(event).all(is_next).then_some(place)
+    }
+
+    /// Deals with an impact: it is no longer to come.
+    fn take(&mut self, place: usize) -> &'a Event {
+        let event = self.impacts[place];
+        self.done[place] = true;
         for body in participants(event) {
-            self.next[body].retain(|other| *other != place);
+            let queue = &mut self.next[body];
+            if let Some(at) = queue.iter().position(|other| *other == place) {
+                queue.remove(at);
+            }
         }
-        Some(self.impacts[place])
+        event
+    }
+
+    /// The impact of these bodies that comes next, if it is another one.
+    fn rival_of(&self, event: &Event) -> Option<&'a Event> {
+        let next = participants(event).filter_map(|body| self.next_of(body));
+        let others = next.filter(|rival| rival.kind != event.kind);
+        others.min_by(|x, y| x.time.total_cmp(&y.time))
     }
 }
 
@@ -100,57 +121,68 @@ fn participants(event: &Event) -> impl Iterator<Item = usize> + use<> {
     std::iter::once(first).chain(second)
 }
 
+/// Every impact of both recordings in order of time: which recording, and its place there.
+fn merged(histories: &[Histories; 2]) -> Vec<(usize, usize)> {
+    let places = |side: usize| (0..histories[side].impacts.len()).map(move |place| (side, place));
+    let mut all: Vec<_> = places(0).chain(places(1)).collect();
+    let time = |&(side, place): &(usize, usize)| histories[side].impacts[place].time;
+    all.sort_by(|x, y| time(x).total_cmp(&time(y)));
+    all
+}
+
 /// Matches the impacts of two recordings of `scene`.
 ///
 /// Impacts of one body within a step of each other have no order: a stepping engine handles
-/// them at the same instant. After a disagreement the bodies that take part, and whoever meets them later, are no longer
-/// compared. An impact within two steps of the end that only one recording has is no
-/// disagreement: the other may have it just past the end.
+/// them at the same instant. After a disagreement the bodies that take part, and whoever meets
+/// them later, are no longer compared. An impact within two steps of the end that only one
+/// recording has is no disagreement: the other may have it just past the end. Which recording
+/// comes first makes no difference.
 #[must_use]
 pub fn compare_events(scene: &Scene, a: &Recording, b: &Recording) -> EventAgreement {
     let bodies = scene.bodies.len();
     let step = a.step.unwrap_or(0.0).max(b.step.unwrap_or(0.0));
     let samples = a.sample_count().min(b.sample_count());
     let end = scene.sample_time(samples - 1) - 2.0 * step;
-    let (mine, mut other) = (Histories::of(a, bodies), Histories::of(b, bodies));
+    let mut histories = [Histories::of(a, bodies), Histories::of(b, bodies)];
     let mut parted = vec![false; bodies];
     let mut agreement = EventAgreement::default();
-    let mut disagreements = Vec::new();
-    for event in &mine.impacts {
+    for (side, place) in merged(&histories) {
+        if histories[side].done[place] {
+            continue;
+        }
+        let other = 1 - side;
+        let event = histories[side].take(place);
         if participants(event).any(|body| parted[body]) {
             participants(event).for_each(|body| parted[body] = true);
-        } else if let Some(twin) = other.take_like(event, step) {
-            agreement.matched += 1;
-            let difference = (event.time - twin.time).abs();
-            agreement.time_difference_max = agreement.time_difference_max.max(difference);
-            let scale = event.impulse.max(twin.impulse);
-            let difference = (event.impulse - twin.impulse).abs() / scale;
-            agreement.impulse_difference_max = agreement.impulse_difference_max.max(difference);
+        } else if let Some(twin) = histories[other].place_of(event, step) {
+            let twin = histories[other].take(twin);
+            agreement.matches(event, twin);
         } else {
-            let next = participants(event).filter_map(|body| other.next_of(body));
-            let rivals = next.filter(|rival| rival.kind != event.kind);
-            let rival = rivals.min_by(|x, y| x.time.total_cmp(&y.time)).copied();
-            disagreements.push(Disagreement {
-                event_a: Some(**event),
-                event_b: rival,
-            });
+            let rival = histories[other].rival_of(event).copied();
             participants(event)
                 .chain(rival.iter().flat_map(participants))
                 .for_each(|body| parted[body] = true);
+            if event.time <= end && agreement.first_disagreement.is_none() {
+                let [event_a, event_b] = match side {
+                    0 => [Some(*event), rival],
+                    _ => [rival, Some(*event)],
+                };
+                agreement.first_disagreement = Some(Disagreement { event_a, event_b });
+            }
         }
     }
-    for body in (0..bodies).filter(|body| !parted[*body]) {
-        let left = other.next_of(body).copied();
-        disagreements.extend(left.map(|event| Disagreement {
-            event_a: None,
-            event_b: Some(event),
-        }));
-    }
-    agreement.first_disagreement = disagreements
-        .into_iter()
-        .filter(|disagreement| disagreement.time() <= end)
-        .min_by(|x, y| x.time().total_cmp(&y.time()));
     agreement
+}
+
+impl EventAgreement {
+    fn matches(&mut self, event: &Event, twin: &Event) {
+        self.matched += 1;
+        let time = (event.time - twin.time).abs();
+        self.time_difference_max = self.time_difference_max.max(time);
+        let scale = event.impulse.max(twin.impulse);
+        let impulse = (event.impulse - twin.impulse).abs() / scale;
+        self.impulse_difference_max = self.impulse_difference_max.max(impulse);
+    }
 }
 
 #[cfg(test)]
@@ -194,7 +226,7 @@ mod tests {
     #[test]
     fn impacts_within_one_step_have_no_order() {
         let scene = scene();
-        let mut a = recording(&scene, &[(1.0, 0, 1), (1.0, 1, 2), (1.0, 2, 3)]);
+        let mut a = recording(&scene, &[(1.0, 0, 1), (1.001, 1, 2), (1.002, 2, 3)]);
         let b = recording(&scene, &[(0.997, 2, 3), (0.998, 1, 2), (0.999, 0, 1)]);
         assert_ne!(compare_events(&scene, &a, &b).first_disagreement, None);
         a.step = Some(0.01);
@@ -231,5 +263,24 @@ mod tests {
         assert_eq!(forth.first_disagreement.unwrap().event_b.unwrap().time, 2.0);
         assert_eq!(back.first_disagreement.unwrap().event_a.unwrap().time, 2.0);
         assert_eq!((forth.matched, back.matched), (1, 1));
+    }
+
+    /// The list walked first used to hide what the other one had earlier.
+    #[test]
+    fn which_recording_comes_first_makes_no_difference() {
+        let scene = scene();
+        let a = recording(&scene, &[(1.2, 2, 3), (1.5, 0, 1)]);
+        let b = recording(&scene, &[(1.1, 0, 2), (1.3, 1, 3)]);
+        let (forth, back) = (
+            compare_events(&scene, &a, &b),
+            compare_events(&scene, &b, &a),
+        );
+        let (forth, back) = (
+            forth.first_disagreement.unwrap(),
+            back.first_disagreement.unwrap(),
+        );
+        assert_eq!(forth.time(), 1.1);
+        assert_eq!(forth.event_a, back.event_b);
+        assert_eq!(forth.event_b, back.event_a);
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::Sizes;
 use crate::physics::{
     BodyState, SpringDamper, Vector3, angular_momentum, attraction_energy, centre_of_mass,
     gravity_energy, kinetic_energy, momentum,
@@ -130,11 +131,7 @@ fn max_penetration(scene: &Scene, states: &[BodyState]) -> f64 {
         for_each_overlap(&spheres, |overlap| deepest = deepest.max(overlap.depth));
     }
     if let Some(cushions) = scene.effects.cushions {
-        let half = [
-            cushions.half_width,
-            cushions.half_height.unwrap_or(f64::INFINITY),
-            cushions.half_length,
-        ];
+        let half = cushions.half_extents();
         for (state, body) in states.iter().zip(&scene.bodies) {
             for (coordinate, half) in state.position.iter().zip(half) {
                 deepest = deepest.max(coordinate.abs() + body.radius - half);
@@ -147,11 +144,11 @@ fn max_penetration(scene: &Scene, states: &[BodyState]) -> f64 {
 /// How far energy and momentum go from where they started.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drift {
-    /// Largest |E(t) - E(0)|, over the largest |kinetic| + |potential| energy.
+    /// Largest |E(t) - E(0)|, as a share of the scale.
     pub energy_drift_max: f64,
-    /// E(end) - E(0) over the same scale, with its sign.
+    /// E(end) - E(0) as a share of the scale, with its sign.
     pub energy_change: f64,
-    /// Largest |p(t) - p(0)|, over the largest sum of m |v|.
+    /// Largest |p(t) - p(0)|, as a share of the scale.
     pub momentum_drift_max: f64,
     /// Largest penetration over all samples, scene length unit.
     pub max_penetration: f64,
@@ -160,26 +157,18 @@ pub struct Drift {
 impl Drift {
     /// The drift over a recording's metrics; at least one sample.
     #[must_use]
-    pub fn of(metrics: &[Metrics]) -> Self {
+    pub fn of(metrics: &[Metrics], scale: &Sizes) -> Self {
         let start = &metrics[0];
         let largest =
             |value: &dyn Fn(&Metrics) -> f64| metrics.iter().map(value).fold(0.0, f64::max);
-        let energy_scale = largest(&Metrics::energy_scale);
-        let momentum_scale = largest(&|at| at.momentum_scale);
         let energy = |at: &Metrics| at.total_energy() - start.total_energy();
+        let momentum = |at: &Metrics| (at.momentum - start.momentum).norm();
         let last = metrics.last().unwrap_or(start);
         Self {
-            energy_drift_max: ratio(largest(&|at| energy(at).abs()), energy_scale),
-            energy_change: ratio(energy(last), energy_scale),
-            momentum_drift_max: ratio(
-                largest(&|at| (at.momentum - start.momentum).norm()),
-                momentum_scale,
-            ),
+            energy_drift_max: Sizes::share(largest(&|at| energy(at).abs()), scale.energy),
+            energy_change: Sizes::share(energy(last), scale.energy),
+            momentum_drift_max: Sizes::share(largest(&momentum), scale.momentum),
             max_penetration: largest(&|at| at.max_penetration),
         }
     }
-}
-
-fn ratio(part: f64, whole: f64) -> f64 {
-    if whole == 0.0 { 0.0 } else { part / whole }
 }

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Divergence, EventAgreement};
+use super::{Divergence, EventAgreement, Sizes};
+use crate::recording::Recording;
 
 /// An engine counts as right while it stays within this share of the scene's size of the
 /// reference.
@@ -23,38 +24,34 @@ pub struct Verdict {
     pub error_max: f64,
     /// The same over the scene's size.
     pub error_relative: f64,
+    /// When the engine stopped before the reference did, s.
+    pub stopped_at_s: Option<f64>,
     /// Until when the reference vouches for its positions, s; later nobody is called wrong.
     pub comparable_until_s: f64,
 }
 
 impl Verdict {
-    /// The verdict on the first voice of a divergence, the second being the reference.
+    /// The verdict on an engine, given how it parts from the reference.
     #[must_use]
     pub fn on(
-        engine: &str,
+        engine: &Recording,
+        reference: &Recording,
         divergence: &Divergence,
         agreement: &EventAgreement,
         size: f64,
     ) -> Self {
         let largest = divergence.largest();
-        let reference = if divergence.voice_a == engine {
-            &divergence.voice_b
-        } else {
-            &divergence.voice_a
-        };
         let comparable_until_s = divergence.samples[divergence.comparable - 1].time;
         let story = agreement.first_disagreement.map(|first| first.time());
         Self {
-            engine: engine.to_owned(),
-            reference: reference.clone(),
+            engine: engine.voice.clone(),
+            reference: reference.voice.clone(),
             wrong_from_s: divergence.first_beyond(RIGHT_WITHIN * size),
             other_story_from_s: story.filter(|time| *time <= comparable_until_s),
             error_max: largest.max_position,
-            error_relative: if size > 0.0 {
-                largest.max_position / size
-            } else {
-                0.0
-            },
+            error_relative: Sizes::share(largest.max_position, size),
+            stopped_at_s: (engine.sample_count() < reference.sample_count())
+                .then(|| divergence.samples[divergence.samples.len() - 1].time),
             comparable_until_s,
         }
     }
@@ -62,6 +59,8 @@ impl Verdict {
     /// Whether the engine stays right as long as the reference vouches for itself.
     #[must_use]
     pub fn is_right(&self) -> bool {
-        self.wrong_from_s.is_none() && self.other_story_from_s.is_none()
+        self.wrong_from_s.is_none()
+            && self.other_story_from_s.is_none()
+            && self.stopped_at_s.is_none()
     }
 }

@@ -99,6 +99,19 @@ pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     }
 }
 
+/// What an engine does to this scene from the start that has nothing to do with its physics;
+/// printed where the findings are.
+#[must_use]
+pub fn warnings(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
+    match &spec.kind {
+        EngineKind::Impulse => Vec::new(),
+        #[cfg(feature = "rapier")]
+        EngineKind::Rapier(settings) => rapier::warnings(scene, settings),
+        #[cfg(not(feature = "rapier"))]
+        EngineKind::Rapier(_) => Vec::new(),
+    }
+}
+
 #[cfg(not(feature = "rapier"))]
 fn not_built(spec: &EngineSpec) -> crate::error::Error {
     crate::error::Error::EngineNotBuilt {

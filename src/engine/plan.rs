@@ -28,6 +28,7 @@ pub struct Plan {
     /// Name of the engine.
     pub engine: String,
     /// The step taken, s.
+    #[serde(rename = "step_s")]
     pub step: f64,
     /// The phases in order.
     pub phases: Vec<Phase>,

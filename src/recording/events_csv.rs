@@ -49,6 +49,9 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
         let kind = match table.text(1) {
             "contact" => {
                 let (a, b) = (body(2)?, body(3)?);
+                if a == b {
+                    return Err(table.wrong(format!("`{}` hits itself", table.text(2))));
+                }
                 EventKind::Contact {
                     a: a.min(b),
                     b: a.max(b),
@@ -71,6 +74,16 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
             }
         };
         let (time, impulse) = (table.number(0)?, table.number(4)?);
+        let latest = events.last().map_or(0.0, |event: &Event| event.time);
+        if !(latest..=scene.duration).contains(&time) {
+            return Err(table.wrong(format!(
+                "time {time} s: give the events in order of time, from 0 to {} s",
+                scene.duration
+            )));
+        }
+        if impulse < 0.0 {
+            return Err(table.wrong(format!("impulse {impulse}: give its size, 0 or above")));
+        }
         events.push(Event {
             time,
             kind,

@@ -57,7 +57,15 @@ impl<'a, R: Read> Table<'a, R> {
 
     fn unreadable(&self, wrong: &csv::Error) -> Error {
         let line = wrong.position().map_or(1, csv::Position::line);
-        self.complaint(line, wrong.to_string())
+        let message = match wrong.kind() {
+            csv::ErrorKind::UnequalLengths {
+                expected_len, len, ..
+            } => {
+                format!("{len} columns where {expected_len} are due")
+            }
+            _ => wrong.to_string(),
+        };
+        self.complaint(line, message)
     }
 
     fn complaint(&self, line: u64, message: String) -> Error {

@@ -60,8 +60,10 @@ pub fn read_trajectory(
             )));
         }
         let time = table.number(0)?;
-        let off = (time - due).abs() > TIME_TOLERANCE * scene.duration;
-        if off || sample > scene.sample_count() {
+        if sample > scene.sample_count() {
+            return Err(table.wrong(format!("goes on past the end, t = {} s", scene.duration)));
+        }
+        if (time - due).abs() > TIME_TOLERANCE * scene.duration {
             let message = format!("time {time} s where {due} s is due: off the scene's grid");
             return Err(table.wrong(message));
         }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::format::whole_percent;
+use super::format::{code, whole_percent};
 use super::template::fill;
 use super::{engineering, percent};
 use crate::compare::{RIGHT_WITHIN, Verdict};
@@ -73,7 +73,7 @@ pub(super) fn case_page(
     let page = Page {
         summary,
         unit,
-        size: with_unit(summary.size, unit),
+        size: with_unit(summary.scale.length, unit),
         findings: findings(summary, shown)
             .iter()
             .map(|(who, what)| format!("**{who}** {what}"))
@@ -111,6 +111,11 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
             )
         })
         .collect();
+    let warned = summary.voices.iter().flat_map(|voice| {
+        let warning = |text: &String| (voice.voice.clone(), format!("bends the scene: {text}."));
+        voice.warnings.iter().map(warning)
+    });
+    found.extend(warned);
     found.extend(summary.refusals.iter().map(|refusal| {
         (
             refusal.engine.clone(),
@@ -135,23 +140,28 @@ fn verdicts(summary: &Summary) -> Vec<String> {
             with_unit(verdict.error_max, unit),
             percent(verdict.error_relative)
         );
-        let mut wrong = Vec::new();
-        wrong.extend(verdict.wrong_from_s.map(|time| {
+        let mut off = Vec::new();
+        off.extend(verdict.wrong_from_s.map(|time| {
             let off = whole_percent(RIGHT_WITHIN);
             format!("more than {off} off from {} s on", engineering(time))
         }));
-        wrong.extend(
+        off.extend(
             verdict
                 .other_story_from_s
-                .map(|time| format!("with other impacts from {} s on", engineering(time))),
+                .map(|time| format!("other impacts from {} s on", engineering(time))),
         );
-        if wrong.is_empty() {
-            format!("`{}` is right to within {error}.", verdict.engine)
+        off.extend(
+            verdict
+                .stopped_at_s
+                .map(|time| format!("stopped at {} s", engineering(time))),
+        );
+        if off.is_empty() {
+            format!("{} stays within {error}.", code(&verdict.engine))
         } else {
+            let off = off.join(", ");
             format!(
-                "`{}` is wrong: {}; at most {error}.",
-                verdict.engine,
-                wrong.join(", ")
+                "{} leaves it: {off}; at most {error}.",
+                code(&verdict.engine)
             )
         }
     };
@@ -171,11 +181,16 @@ fn parting(summary: &Summary, pair: &PairSummary) -> (String, String) {
         }
         None => String::new(),
     };
+    let until = if pair.compared_until_s < summary.duration_s {
+        format!(", compared until {} s", engineering(pair.compared_until_s))
+    } else {
+        String::new()
+    };
     let what = format!(
-        "are at most {} apart ({} of the scene's size), `{}` at {} s{told}.",
+        "are at most {} apart ({} of the scene's size), {} at {} s{until}{told}.",
         with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
         percent(pair.position_divergence_relative),
-        pair.worst_body,
+        code(&pair.worst_body),
         engineering(pair.at_time_s),
     );
     (format!("{} and {}", pair.engine_a, pair.engine_b), what)

@@ -61,6 +61,22 @@ impl Folder {
         Self::open(&self.path.join(name))
     }
 
+    /// Removes the files of an earlier run, so that a folder never mixes two.
+    ///
+    /// # Errors
+    /// [`Error::Write`] with the file that stays.
+    pub fn remove(&self, stale: impl Fn(&str) -> bool) -> Result<()> {
+        let unreadable = |source| Error::read(&self.path, source);
+        for entry in fs::read_dir(&self.path).map_err(unreadable)? {
+            let entry = entry.map_err(unreadable)?;
+            if entry.file_name().to_str().is_some_and(&stale) && entry.path().is_file() {
+                let path = entry.path();
+                fs::remove_file(&path).map_err(|source| Error::write(&path, source))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Writes a file: into a file of another name beside it, which then takes its place.
     ///
     /// # Errors
@@ -80,6 +96,8 @@ fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
+    let path = &destination(path)?;
+    let folder = path.parent().unwrap_or(folder);
     let file = {
         let mut known = unfinished();
         let file = begin(folder)?;
@@ -101,6 +119,19 @@ fn write_whole(
     placed
 }
 
+/// Where a file is to stand: where a link leads, and never in place of a device or a folder.
+fn destination(path: &Path) -> io::Result<PathBuf> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() => fs::canonicalize(path),
+        Ok(_) => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "there is something else than a regular file",
+        )),
+        Err(wrong) if wrong.kind() == io::ErrorKind::NotFound => Ok(path.to_owned()),
+        Err(wrong) => Err(wrong),
+    }
+}
+
 /// A file of its own name, with the permissions that any new file would have.
 fn begin(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
@@ -116,6 +147,22 @@ fn begin(folder: &Path) -> io::Result<NamedTempFile> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_a_folder_is_not_replaced() {
+        let scratch = tempfile::tempdir().unwrap();
+        let (real, link) = (scratch.path().join("real"), scratch.path().join("link"));
+        fs::write(&real, "old").unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        let folder = Folder::open(scratch.path()).unwrap();
+        folder.write("link", |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        fs::create_dir(scratch.path().join("sub")).unwrap();
+        let said = folder.write("sub", |_| Ok(())).unwrap_err().to_string();
+        assert!(said.contains("regular file"), "{said}");
+    }
 
     #[test]
     fn a_failed_write_leaves_the_old_file_and_nothing_else() {

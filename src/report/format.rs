@@ -7,6 +7,7 @@
 /// assert_eq!(engineering(1234.5), "1234");
 /// assert_eq!(engineering(0.0123456), "0.0123");
 /// assert_eq!(engineering(-3.2e-14), "-3.2e-14");
+/// assert_eq!(engineering(99.98), "100");
 /// assert_eq!(engineering(0.0), "0");
 /// ```
 #[must_use]
@@ -21,9 +22,13 @@ pub fn engineering(value: f64) -> String {
     if !(1e-3..1e6).contains(&size) {
         return format!("{value:.1e}");
     }
-    #[allow(clippy::cast_possible_truncation, reason = "between -3 and 5")]
-    let digits_before = size.log10().floor() as i32;
-    let decimals = usize::try_from(2 - digits_before).unwrap_or(0);
+    // The exponent after rounding: 99.98 is 100, not 100.0.
+    let rounded = format!("{value:.2e}");
+    let exponent = rounded
+        .rsplit('e')
+        .next()
+        .and_then(|e| e.parse::<i32>().ok());
+    let decimals = usize::try_from(2 - exponent.unwrap_or(0)).unwrap_or(0);
     format!("{value:.decimals$}")
 }
 
@@ -43,4 +48,9 @@ pub fn percent(share: f64) -> String {
 /// A share that was chosen round, as a percentage without needless zeros.
 pub(super) fn whole_percent(share: f64) -> String {
     format!("{} %", 100.0 * share)
+}
+
+/// A name as code in Markdown; names are free text.
+pub(super) fn code(name: &str) -> String {
+    format!("`{}`", name.replace('`', "'"))
 }

@@ -288,6 +288,13 @@ fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String
     (!worst.is_empty()).then_some(said)
 }
 
+/// The middle of sorted numbers, the mean of the two middle ones where their count is even.
+fn median(sorted: &[f64]) -> Option<f64> {
+    let upper = *sorted.get(sorted.len() / 2)?;
+    let lower = *sorted.get((sorted.len() - 1) / 2)?;
+    Some(0.5 * (lower + upper))
+}
+
 /// How often each engine is right, and its middle error.
 fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
     let judged = summaries
@@ -300,7 +307,7 @@ fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
         let right = own.iter().filter(|verdict| verdict.is_right()).count();
         let mut errors: Vec<_> = own.iter().map(|verdict| verdict.error_relative).collect();
         errors.sort_by(f64::total_cmp);
-        let middle = percent(*errors.get(errors.len() / 2)?);
+        let middle = percent(median(&errors)?);
         Some(format!(
             "`{}` in {right} (median error {middle})",
             spec.name

@@ -32,6 +32,13 @@ pub enum Place {
     InReport,
 }
 
+/// Whether a file in a comparison's folder tells of an engine that may not run this time, or
+/// of the comparison as a whole; the others are written anew in any case.
+fn is_stale(name: &str) -> bool {
+    let table = |kind: &str| name.starts_with(kind) && name.ends_with(".csv");
+    table("trajectory-") || table("events-") || ["README.md", "summary.json"].contains(&name)
+}
+
 /// Writes tables, pictures, page and summary of a comparison; gives the summary.
 ///
 /// # Errors
@@ -39,6 +46,7 @@ pub enum Place {
 pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) -> Result<Summary> {
     let scene = &comparison.scene;
     let summary = Summary::of(comparison);
+    folder.remove(is_stale)?;
     for voice in &comparison.voices {
         let name = voice.name();
         folder.write(&format!("trajectory-{name}.csv"), |out| {

@@ -4,7 +4,7 @@ use super::chart::{
     AxisLabel, Curve, CurvesFigure, LineStyle, Marks, Panel, PathBody, PathsFigure, Scale, View,
     Weight, curves, paths,
 };
-use crate::compare::Metrics;
+use crate::compare::{Metrics, Sizes};
 use crate::error::{Error, Result};
 use crate::physics::Vector3;
 use crate::scene::Scene;
@@ -13,6 +13,9 @@ use crate::study::{SideBySide, Track, Voice, track};
 /// Ranges below this share of the quantity's size are drawn flat: the rounding of Rapier's
 /// single precision (6e-8 a step, accumulated), which is no finding to magnify.
 const FLAT: f64 = 1e-6;
+
+/// Colours of pairs of voices: none that stands for a voice in the same picture.
+const PAIR_COLORS: [usize; 3] = [6, 3, 5];
 
 /// A picture's file name and its PNG bytes.
 pub(super) type Picture = (&'static str, Vec<u8>);
@@ -134,7 +137,11 @@ fn paths_figure(comparison: &SideBySide, voices: &[&Voice], plane: Plane) -> Res
     };
     Ok(PathsFigure {
         title: scene.heading().to_owned(),
-        subtitle: format!("paths {seen}, {} s, {}", scene.duration, steps(voices)),
+        subtitle: format!(
+            "paths {seen}, {} s, {}",
+            super::engineering(scene.duration),
+            steps(voices)
+        ),
         axes: [
             AxisLabel::new(AXIS[across], unit),
             AxisLabel::new(AXIS[up], unit),
@@ -177,7 +184,7 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
         };
         let curve = |value: fn(&crate::compare::DivergenceSample) -> f64| Curve {
             label: format!("{} to {}", voices[a].name(), voices[b].name()),
-            color: number,
+            color: PAIR_COLORS[number % PAIR_COLORS.len()],
             line: style(number),
             weight: Weight::Main,
             points: divergence
@@ -219,7 +226,7 @@ fn energy_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure {
     let unit = scene.units.length.energy_symbol();
     let mut total = Panel::new(labelled("energy", unit), Scale::Linear);
     total.least_span = FLAT;
-    total.size = energy_scale(voices);
+    total.size = comparison.scale.energy;
     let potential = scene.effects.attraction.is_some()
         || scene.effects.gravity.is_some()
         || !scene.effects.springs.is_empty();
@@ -261,14 +268,7 @@ fn energy_words(scene: &Scene) -> &'static str {
 /// Where the model keeps the energy, its change; else the difference to the last voice, which
 /// is truth where there is truth.
 fn energy_change(comparison: &SideBySide, voices: &[&Voice]) -> Panel {
-    let scale = energy_scale(voices);
-    let share = |difference: f64| {
-        if scale > 0.0 {
-            difference.abs() / scale
-        } else {
-            0.0
-        }
-    };
+    let share = |difference: f64| Sizes::share(difference.abs(), comparison.scale.energy);
     let conserved = comparison.scene.effects.conserve_energy();
     let label = match voices.last() {
         Some(last) if !conserved => format!("difference to {}, relative", last.name()),
@@ -300,21 +300,15 @@ fn energy_change(comparison: &SideBySide, voices: &[&Voice]) -> Panel {
     panel
 }
 
-fn energy_scale(voices: &[&Voice]) -> f64 {
-    let all = voices.iter().flat_map(|voice| &voice.metrics);
-    all.map(Metrics::energy_scale).fold(0.0, f64::max)
-}
-
 fn momentum_figure(comparison: &SideBySide, voices: &[&Voice], plane: Plane) -> CurvesFigure {
     let scene = &comparison.scene;
     let unit = scene.units.length.momentum_symbol();
     let length = scene.units.length.symbol();
-    let all = || voices.iter().flat_map(|voice| &voice.metrics);
-    let momentum_scale = all().map(|at| at.momentum_scale).fold(0.0, f64::max);
+    let scale = &comparison.scale;
     let mut panels = Vec::new();
     for axis in plane.axes() {
         let mut panel = Panel::new(labelled(&format!("p_{}", AXIS[axis]), unit), Scale::Linear);
-        panel.size = momentum_scale;
+        panel.size = scale.momentum;
         panel.curves = component(voices, |at| &at.momentum, axis);
         panels.push(panel);
     }
@@ -328,7 +322,7 @@ fn momentum_figure(comparison: &SideBySide, voices: &[&Voice], plane: Plane) -> 
         labelled(&format!("L_{}", AXIS[normal]), &angular_unit),
         Scale::Linear,
     );
-    angular.size = momentum_scale * comparison.size;
+    angular.size = scale.momentum * scale.length;
     angular.curves = component(voices, |at| &at.angular_momentum, normal);
     panels.push(angular);
     for panel in &mut panels {

@@ -10,6 +10,9 @@ use crate::error::{Error, Result};
 /// Samples times bodies that a recording may hold: 2 GB of states.
 const STATES_MAX: f64 = 4e7;
 
+/// Characters in a name, at most.
+const NAME_MAX: usize = 200;
+
 /// One step from the root of a scene file to a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PathStep {
@@ -96,7 +99,7 @@ impl fmt::Display for SceneWarning {
                 pairs,
             } => write!(
                 f,
-                "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e}: \
+                "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
                  engines push them apart, each in its own way; move them apart for a comparison of motion"
             ),
             Self::OutsideAtStart { body } => write!(
@@ -116,6 +119,24 @@ impl Scene {
     pub fn check(&self) -> std::result::Result<(), Fault> {
         let root = FieldPath::default;
         check_scene_name(&self.name)?;
+        let texts = [
+            ("title", &self.title),
+            ("source", &self.source),
+            ("watch", &self.watch),
+        ];
+        for (key, text) in texts {
+            if text
+                .as_ref()
+                .is_some_and(|text| text.chars().any(is_invisible))
+            {
+                let remedy = "write it in one line, without control characters";
+                return Err(fault(
+                    root().key(key),
+                    "text with control characters",
+                    remedy,
+                ));
+            }
+        }
         positive(&root().key("duration"), self.duration)?;
         positive(&root().key("sample_every"), self.sample_every)?;
         self.check_grid()?;
@@ -191,11 +212,7 @@ impl Scene {
     pub fn warnings(&self) -> Vec<SceneWarning> {
         let mut warnings = Vec::new();
         if let Some(cushions) = &self.effects.cushions {
-            let half = [
-                cushions.half_width,
-                cushions.half_height.unwrap_or(f64::INFINITY),
-                cushions.half_length,
-            ];
+            let half = cushions.half_extents();
             let outside = self.bodies.iter().find(|body| {
                 (0..3).any(|axis| body.position[axis].abs() + body.radius > half[axis])
             });
@@ -301,14 +318,32 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
     if name.trim().is_empty() {
         return Err(fault(path.clone(), "empty", "give the body a name"));
     }
-    if name.chars().any(char::is_control) {
+    if name.chars().any(is_invisible) {
         return Err(fault(
             path.clone(),
             format!("`{}`", printable(name)),
-            "leave out control characters such as tabs and line ends",
+            "leave out control characters such as tabs, line ends and marks of direction",
+        ));
+    }
+    if name.chars().count() > NAME_MAX {
+        return Err(fault(
+            path.clone(),
+            format!("{} characters long", name.chars().count()),
+            format!("give a name of at most {NAME_MAX} characters"),
         ));
     }
     Ok(())
+}
+
+/// Control characters, and marks of Unicode that show as nothing but change how text is laid
+/// out.
+fn is_invisible(c: char) -> bool {
+    let marks = [
+        '\u{200b}'..='\u{200f}',
+        '\u{2028}'..='\u{202e}',
+        '\u{2060}'..='\u{206f}',
+    ];
+    c.is_control() || c == '\u{feff}' || marks.iter().any(|range| range.contains(&c))
 }
 
 fn printable(text: &str) -> String {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::file::exactly;
+
 /// The effects that a scene declares; each is absent unless the scene names it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -57,6 +59,15 @@ pub struct Cushions {
     pub restitution: f64,
 }
 
+impl Cushions {
+    /// Distances of the walls from the origin along x, y and z; infinite where the box is open.
+    #[must_use]
+    pub fn half_extents(&self) -> [f64; 3] {
+        let half_height = self.half_height.unwrap_or(f64::INFINITY);
+        [self.half_width, half_height, self.half_length]
+    }
+}
+
 /// Drag `F = -k v`.
 ///
 /// Source: lecture, "당구게임", `floorDrag()`; also the first, simple damper of
@@ -97,6 +108,7 @@ pub struct Attraction {
 #[serde(deny_unknown_fields)]
 pub struct Gravity {
     /// Acceleration, scene length unit per second squared.
+    #[serde(deserialize_with = "exactly")]
     pub acceleration: [f64; 3],
 }
 
@@ -109,6 +121,7 @@ pub struct Gravity {
 #[serde(deny_unknown_fields)]
 pub struct Spring {
     /// Names of bodies a and b.
+    #[serde(deserialize_with = "exactly")]
     pub between: [String; 2],
     /// k, kg/s².
     pub stiffness: f64,

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -38,7 +40,7 @@ pub fn parse(text: &str, file: &str) -> Result<Scene> {
     };
     let scene: Scene = toml::from_str(text).map_err(|wrong| {
         let byte = wrong.span().map_or(0, |span| span.start);
-        complaint(byte, one_line(wrong.message()))
+        complaint(byte, in_plain_words(wrong.message()))
     })?;
     scene
         .check()
@@ -56,6 +58,23 @@ pub fn to_toml(scene: &Scene) -> Result<String> {
         scene: scene.name.clone(),
         source,
     })
+}
+
+/// Reads an array that has exactly so many values; serde itself drops what is too much.
+///
+/// # Errors
+/// Those of the deserializer, or another number of values.
+pub(super) fn exactly<'de, D, T, const N: usize>(
+    deserializer: D,
+) -> std::result::Result<[T; N], D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let values = Vec::<T>::deserialize(deserializer)?;
+    let found = values.len();
+    let wrong = |_| D::Error::custom(format!("{found} values where {N} are due"));
+    <[T; N]>::try_from(values).map_err(wrong)
 }
 
 /// Byte offset of a field, or of the innermost table round it that the text has.
@@ -87,8 +106,16 @@ fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (line, column)
 }
 
-fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+/// The parser's message in one line, without the names of Rust's types.
+fn in_plain_words(message: &str) -> String {
+    let words = message.split_whitespace().map(|word| match word {
+        "f64" | "f64," => "a number",
+        "i128" | "i64" => "an integer",
+        "map," => "table,",
+        "sequence" => "array",
+        word => word,
+    });
+    words.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

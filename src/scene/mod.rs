@@ -58,8 +58,10 @@ pub struct Body {
     /// Radius, scene length unit.
     pub radius: f64,
     /// Position of the centre at time 0, scene length unit.
+    #[serde(deserialize_with = "file::exactly")]
     pub position: [f64; 3],
     /// Velocity at time 0, scene length unit per second.
+    #[serde(deserialize_with = "file::exactly")]
     pub velocity: [f64; 3],
 }
 

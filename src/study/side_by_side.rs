@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::case::Case;
 use crate::compare::{
-    Divergence, Drift, EventAgreement, Metrics, Verdict, compare_events, metrics, scene_size,
+    Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, compare_events, metrics,
 };
 use crate::engine::{EngineSpec, record};
 use crate::error::{Error, Result};
@@ -21,18 +21,22 @@ pub struct Voice {
     pub recording: Recording,
     /// Conserved quantities, sample by sample.
     pub metrics: Vec<Metrics>,
-    /// How far these drift.
+    /// Its own sizes.
+    pub scale: Sizes,
+    /// How far the conserved quantities drift, as shares of the comparison's scale.
     pub drift: Drift,
 }
 
 impl Voice {
     fn new(scene: &Scene, spec: Option<EngineSpec>, recording: Recording) -> Self {
         let metrics = metrics(scene, &recording);
-        let drift = Drift::of(&metrics);
+        let scale = Sizes::of(&recording, &metrics);
+        let drift = Drift::of(&metrics, &scale);
         Self {
             spec,
             recording,
             metrics,
+            scale,
             drift,
         }
     }
@@ -74,8 +78,8 @@ pub struct SideBySide {
     pub refusals: Vec<Refusal>,
     /// Every pair of voices, in order.
     pub pairs: Vec<(Divergence, EventAgreement)>,
-    /// Diagonal of the box of all positions, the yardstick of divergences.
-    pub size: f64,
+    /// The yardsticks of the comparison.
+    pub scale: Sizes,
 }
 
 impl SideBySide {
@@ -100,7 +104,13 @@ impl SideBySide {
         let judged = self.voices.iter().filter(|voice| voice.takes_steps());
         let verdict = |voice: &Voice| {
             let (divergence, agreement) = self.pair(voice.name(), reference.name())?;
-            Some(Verdict::on(voice.name(), divergence, agreement, self.size))
+            Some(Verdict::on(
+                &voice.recording,
+                &reference.recording,
+                divergence,
+                agreement,
+                self.scale.length,
+            ))
         };
         judged.filter_map(verdict).collect()
     }
@@ -140,6 +150,10 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
             .iter()
             .map(|truth| Voice::new(scene, None, truth.clone())),
     );
+    let scale = common_scale(&voices);
+    for voice in &mut voices {
+        voice.drift = Drift::of(&voice.metrics, &scale);
+    }
     let recordings: Vec<_> = voices.iter().map(|voice| voice.recording.clone()).collect();
     let later = |a: usize| (a + 1..recordings.len()).map(move |b| (a, b));
     let pairs = (0..recordings.len())
@@ -156,9 +170,32 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
         scene: scene.clone(),
         origin: case.origin.clone(),
         dt,
-        size: scene_size(&recordings),
+        scale,
         voices,
         refusals,
         pairs,
+    })
+}
+
+/// The sizes against which a comparison measures: those of the reference, or without one the
+/// smallest of the voices that finished.
+fn common_scale(voices: &[Voice]) -> Sizes {
+    if let Some(reference) = voices.iter().find(|voice| !voice.takes_steps()) {
+        return reference.scale;
+    }
+    let finished = voices
+        .iter()
+        .filter(|voice| voice.recording.outcome.is_finished());
+    let of_all = || {
+        voices
+            .iter()
+            .map(|voice| voice.scale)
+            .reduce(Sizes::smaller)
+    };
+    let scale = finished.map(|voice| voice.scale).reduce(Sizes::smaller);
+    scale.or_else(of_all).unwrap_or(Sizes {
+        length: 0.0,
+        energy: 0.0,
+        momentum: 0.0,
     })
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Refusal, SideBySide, Voice};
-use crate::compare::{Disagreement, Divergence, Drift, EventAgreement, Verdict};
-use crate::engine::{EngineSpec, notes};
+use crate::compare::{Disagreement, Divergence, Drift, EventAgreement, Sizes, Verdict};
+use crate::engine::{EngineSpec, notes, warnings};
 use crate::recording::{Digits, Event, EventCounts, EventKind, Outcome, Undetermined, Work};
 use crate::scene::{LengthUnit, Scene};
 
@@ -33,8 +33,8 @@ pub struct Summary {
     pub length_unit: LengthUnit,
     /// Largest step asked for, s.
     pub dt_s: f64,
-    /// Diagonal of the box of all positions, scene length unit.
-    pub size: f64,
+    /// What lengths, energies and momenta are measured against.
+    pub scale: Sizes,
     /// Whether the model keeps the energy.
     pub model_conserves_energy: bool,
     /// Whether the model keeps the momentum.
@@ -62,6 +62,8 @@ pub struct VoiceSummary {
     pub voice: String,
     /// The engine with its settings; none for truth.
     pub engine: Option<EngineSpec>,
+    /// What the engine does to the scene from the start that is no physics.
+    pub warnings: Vec<String>,
     /// What the harness supplies and what differs from the lecture.
     pub notes: Vec<String>,
     /// The step taken, s.
@@ -116,8 +118,8 @@ pub struct PairSummary {
     pub impact_time_difference_max_s: f64,
     /// Largest difference in impulse of two matched impacts, over the larger of the two.
     pub impulse_difference_max: f64,
-    /// Until when both vouch for their positions, s.
-    pub comparable_until_s: f64,
+    /// Until when both go on and vouch for their positions, s.
+    pub compared_until_s: f64,
     /// The first impact on which the two disagree.
     pub first_disagreement: Option<DisagreementSummary>,
     /// Largest distance of each body.
@@ -149,7 +151,7 @@ impl Summary {
             sample_every_s: scene.sample_every,
             length_unit: scene.units.length,
             dt_s: comparison.dt,
-            size: comparison.size,
+            scale: comparison.scale,
             model_conserves_energy: scene.effects.conserve_energy(),
             model_conserves_momentum: scene.effects.conserve_momentum(),
             warnings: scene.warnings().iter().map(ToString::to_string).collect(),
@@ -186,6 +188,11 @@ impl VoiceSummary {
         let recording = &voice.recording;
         Self {
             voice: voice.name().to_owned(),
+            warnings: voice
+                .spec
+                .as_ref()
+                .map(|spec| warnings(scene, spec))
+                .unwrap_or_default(),
             notes: voice
                 .spec
                 .as_ref()
@@ -217,9 +224,7 @@ impl PairSummary {
         let b = comparison.voice(&divergence.voice_b)?;
         let largest = divergence.largest();
         let both = || a.metrics.iter().zip(&b.metrics);
-        let scale = |of: fn(&crate::compare::Metrics) -> f64| {
-            both().map(|(a, b)| of(a).max(of(b))).fold(0.0, f64::max)
-        };
+        let scale = &comparison.scale;
         let energies = both().map(|(a, b)| (a.total_energy() - b.total_energy()).abs());
         let momenta = both().map(|(a, b)| (a.momentum - b.momentum).norm());
         let centres = both().map(|(a, b)| (a.centre_of_mass - b.centre_of_mass).norm());
@@ -228,7 +233,7 @@ impl PairSummary {
             engine_a: divergence.voice_a.clone(),
             engine_b: divergence.voice_b.clone(),
             position_divergence_max: largest.max_position,
-            position_divergence_relative: relative(largest.max_position, comparison.size),
+            position_divergence_relative: Sizes::share(largest.max_position, scale.length),
             at_time_s: largest.time,
             worst_body: scene.bodies[largest.worst_body].name.clone(),
             velocity_divergence_rms_max: divergence
@@ -236,19 +241,13 @@ impl PairSummary {
                 .iter()
                 .map(|at| at.rms_velocity)
                 .fold(0.0, f64::max),
-            energy_difference_max: relative(
-                energies.fold(0.0, f64::max),
-                scale(crate::compare::Metrics::energy_scale),
-            ),
-            momentum_difference_max: relative(
-                momenta.fold(0.0, f64::max),
-                scale(|at| at.momentum_scale),
-            ),
+            energy_difference_max: Sizes::share(energies.fold(0.0, f64::max), scale.energy),
+            momentum_difference_max: Sizes::share(momenta.fold(0.0, f64::max), scale.momentum),
             centre_of_mass_difference_max: centres.fold(0.0, f64::max),
             impacts_matched: agreement.matched,
             impact_time_difference_max_s: agreement.time_difference_max,
             impulse_difference_max: agreement.impulse_difference_max,
-            comparable_until_s: divergence.samples[divergence.comparable - 1].time,
+            compared_until_s: divergence.samples[divergence.comparable - 1].time,
             first_disagreement: agreement.first_disagreement.map(|disagreement| {
                 let voices = [divergence.voice_a.as_str(), divergence.voice_b.as_str()];
                 DisagreementSummary::of(scene, voices, &disagreement)
@@ -287,8 +286,4 @@ fn describe(scene: &Scene, event: &Event) -> String {
         EventKind::Rest { body } => format!("`{}` stop", name(body)),
     };
     format!("{what} at {:.4} s", event.time)
-}
-
-fn relative(part: f64, whole: f64) -> f64 {
-    if whole == 0.0 { 0.0 } else { part / whole }
 }

@@ -29,9 +29,10 @@ pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
     let parts = (1..=grid.steps_per_sample.min(1000))
         .filter(divides)
         .take_while(fits)
-        .last();
+        .last()
+        .unwrap_or(1);
     #[allow(clippy::cast_precision_loss, reason = "1000 at most")]
-    let sample_every = scene.sample_every / parts.unwrap_or(1) as f64;
+    let sample_every = scene.sample_every / parts as f64;
     let fine = record(
         &Scene {
             sample_every,
@@ -40,7 +41,10 @@ pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
         spec,
         dt,
     )?;
-    Ok(points(scene, &fine, |_, _| None))
+    // A recording ends with its last finite sample on the scene's own grid; so does its path.
+    let intervals = voice.recording.sample_count() - 1;
+    let kept = intervals * usize::try_from(parts).unwrap_or(1) + 1;
+    Ok(points(scene, &fine, kept, |_, _| None))
 }
 
 /// Samples, with a point put in at the impact of a body between two of them.
@@ -48,21 +52,27 @@ pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
 /// The point lies on the straight line before the first impact; that drag and gravity bend
 /// the flight in between does not show in a picture.
 fn with_corners(scene: &Scene, recording: &Recording) -> Track {
-    points(scene, recording, |sample, body| {
-        let (start, end) = (scene.sample_time(sample), scene.sample_time(sample + 1));
-        let mut impacts = recording.events.impacts();
-        let hit = impacts.find(|event| {
-            let (first, second) = event.kind.bodies();
-            event.time > start && event.time < end && (first == body || second == Some(body))
-        })?;
-        let state = recording.sample(sample)[body];
-        Some(state.position + state.velocity * (hit.time - start))
-    })
+    points(
+        scene,
+        recording,
+        recording.sample_count(),
+        |sample, body| {
+            let (start, end) = (scene.sample_time(sample), scene.sample_time(sample + 1));
+            let mut impacts = recording.events.impacts();
+            let hit = impacts.find(|event| {
+                let (first, second) = event.kind.bodies();
+                event.time > start && event.time < end && (first == body || second == Some(body))
+            })?;
+            let state = recording.sample(sample)[body];
+            Some(state.position + state.velocity * (hit.time - start))
+        },
+    )
 }
 
 fn points(
     scene: &Scene,
     recording: &Recording,
+    samples: usize,
     after: impl Fn(usize, usize) -> Option<Vector3>,
 ) -> Track {
     let of_body = |body: usize| {
@@ -70,7 +80,9 @@ fn points(
             let here = recording.sample(sample)[body].position;
             std::iter::once(here).chain(after(sample, body))
         };
-        (0..recording.sample_count()).flat_map(at).collect()
+        (0..samples.min(recording.sample_count()))
+            .flat_map(at)
+            .collect()
     };
     (0..scene.bodies.len()).map(of_body).collect()
 }

@@ -1,7 +1,7 @@
 //! Every reference case: whole, readable, and near its truth as far as the method promises.
 
 use carom::case::{Case, Library};
-use carom::compare::{Divergence, compare_events, scene_size};
+use carom::compare::{Divergence, Sizes, compare_events, metrics};
 use carom::scene;
 
 use crate::scenes::lecture;
@@ -90,7 +90,7 @@ fn small_steps_find_every_impact_of_two_bodies() {
         let case = Library::Embedded.case(name).unwrap();
         let truth = case.truth.as_ref().unwrap();
         let recording = lecture(&case.scene, 1e-4);
-        let size = scene_size(std::slice::from_ref(truth));
+        let size = Sizes::of(truth, &metrics(&case.scene, truth)).length;
         let error = Divergence::between(&case.scene, &recording, truth)
             .largest()
             .max_position;

@@ -1,5 +1,6 @@
 //! Scenes that several tests share.
 
+use carom::compare::{Drift, Sizes, metrics};
 use carom::engine::{engine, record};
 use carom::recording::Recording;
 use carom::scene::{Attraction, Body, Contact, Effects, Scene, Units};
@@ -72,4 +73,10 @@ pub fn apart(a: &Recording, b: &Recording) -> f64 {
     pairs
         .map(|(a, b)| (a.position - b.position).norm())
         .fold(0.0, f64::max)
+}
+
+/// Largest change of the total momentum, as a share of the largest sum of m |v|.
+pub fn momentum_drift(scene: &Scene, recording: &Recording) -> f64 {
+    let metrics = metrics(scene, recording);
+    Drift::of(&metrics, &Sizes::of(recording, &metrics)).momentum_drift_max
 }

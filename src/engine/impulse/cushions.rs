@@ -26,11 +26,7 @@ const ORDER: [Wall; 6] = [
 #[inline]
 pub(super) fn bounce(particles: &mut [Particle], effect: &Cushions, observer: &mut impl Observer) {
     let walls = if effect.half_height.is_some() { 6 } else { 4 };
-    let half = [
-        effect.half_width,
-        effect.half_height.unwrap_or(f64::INFINITY),
-        effect.half_length,
-    ];
+    let half = effect.half_extents();
     for (body, particle) in particles.iter_mut().enumerate() {
         for wall in &ORDER[..walls] {
             let (axis, side) = wall.axis_and_side();

@@ -6,15 +6,22 @@ use crate::scene::Scene;
 #[must_use]
 pub fn notes(scene: &Scene) -> Vec<String> {
     let effects = &scene.effects;
-    let divides_by_distance =
-        effects.contact.is_some() || effects.attraction.is_some() || !effects.springs.is_empty();
     let mut notes = Vec::new();
-    if divides_by_distance {
-        notes.push(
-            "where centres coincide the slides divide 0 by 0; here attraction and spring are zero \
-             and a contact's normal is against the relative velocity"
-                .to_owned(),
-        );
+    let guards = [
+        (
+            effects.contact.is_some(),
+            "a contact's normal is against the relative velocity",
+        ),
+        (effects.attraction.is_some(), "the attraction is zero"),
+        (!effects.springs.is_empty(), "the spring is zero"),
+    ];
+    let guards = guards.iter().filter(|(present, _)| *present);
+    let guards: Vec<_> = guards.map(|(_, guard)| *guard).collect();
+    if !guards.is_empty() {
+        notes.push(format!(
+            "where centres coincide the slides divide 0 by 0; here {}",
+            guards.join(" and ")
+        ));
     }
     if effects
         .cushions

@@ -185,11 +185,23 @@ fn native_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut(
             "speeds are cut at {} {unit}/s, by Rapier's default",
             shown(cap)
         ));
-        let fast = |body: &&Body| length(&body.velocity.into()) > cap;
-        if let Some(body) = scene.bodies.iter().find(fast) {
-            note(&format!("`{}` starts faster than that", body.name));
-        }
     }
+}
+
+/// What Rapier does to this scene from the start that has nothing to do with its physics.
+#[must_use]
+pub fn warnings(scene: &Scene, settings: &RapierSettings) -> Vec<String> {
+    let cap = parameters(settings, scene.units.length.per_metre(), 1.0).speed_cap;
+    let fast = |body: &&Body| cap.is_some_and(|cap| length(&body.velocity.into()) > cap);
+    let fast = scene.bodies.iter().filter(fast).map(|body| {
+        let cap = cap.map_or_else(String::new, shown);
+        let unit = scene.units.length.symbol();
+        format!(
+            "`{}` starts faster than Rapier's cap of speeds, {cap} {unit}/s, and is slowed to it",
+            body.name
+        )
+    });
+    fast.collect()
 }
 
 fn contact_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut(&str)) {

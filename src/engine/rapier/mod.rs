@@ -14,7 +14,7 @@ mod watch;
 mod world;
 mod worlds;
 
-pub use describe::{VERSION, notes};
+pub use describe::{VERSION, notes, warnings};
 
 use super::{Phase, Precision, RapierSettings, Simulation, StepGrid};
 use crate::error::Result;

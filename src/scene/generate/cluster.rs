@@ -48,6 +48,13 @@ impl Cluster {
     /// # Errors
     /// [`Error::Argument`] if there is no body, or the spheres do not fit without overlap.
     pub fn scene(&self) -> Result<Scene> {
+        if self.count == 0 {
+            return Err(Error::Argument {
+                argument: "count",
+                found: "0".into(),
+                remedy: "give 1 or more".into(),
+            });
+        }
         let mut random = Random::new(self.seed);
         let mut placed: Vec<(Vector3<f64>, f64)> = Vec::new();
         let mut bodies = Vec::new();

@@ -44,6 +44,13 @@ impl Rack {
     /// # Errors
     /// [`Error::Argument`] if the rack does not fit on the table.
     pub fn scene(&self) -> Result<Scene> {
+        if self.rows == 0 {
+            return Err(Error::Argument {
+                argument: "rows",
+                found: "0".into(),
+                remedy: "give 1 or more".into(),
+            });
+        }
         #[allow(clippy::cast_precision_loss, reason = "a handful of rows")]
         let rows = self.rows as f64;
         let pitch = 2.0 * RADIUS + self.gap;
