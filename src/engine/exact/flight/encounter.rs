@@ -8,7 +8,8 @@ use crate::engine::exact::real::Real;
 /// rounding: nearer, plain rounding is small beside the radii anyway.
 const FAR: f64 = 16.0;
 
-/// Clock time until two spheres touch while they approach; none if they pass.
+/// Clock time until two spheres touch while they approach; none if they pass, or if that is
+/// surely later than `before`.
 ///
 /// Equation: the smaller root of `|d + w u| = s`. With the impact parameter p from the cross
 /// product, `p = |d × w|/|w|`, the discriminant is `w² (s² - p²)`; and
@@ -16,7 +17,12 @@ const FAR: f64 = 16.0;
 /// that a small target far away and a grazing hit keep their digits.
 /// Units: those of `d/w`. Valid for: any d and w; spheres that overlap and approach meet at once.
 #[inline]
-pub(super) fn clock_to_contact<R: Real>(d: &Vector3<R>, w: &Vector3<R>, sum: R) -> Option<R> {
+pub(super) fn clock_to_contact<R: Real>(
+    d: &Vector3<R>,
+    w: &Vector3<R>,
+    sum: R,
+    before: R,
+) -> Option<R> {
     let approach = d.dot(w);
     if approach >= R::zero() {
         return None;
@@ -25,6 +31,10 @@ pub(super) fn clock_to_contact<R: Real>(d: &Vector3<R>, w: &Vector3<R>, sum: R) 
     let gap = apart - reach;
     if gap <= R::zero() {
         return Some(R::zero());
+    }
+    // The root is at most -d.w, so that u > gap/(-2 d.w).
+    if gap > -approach.twice() * before {
+        return None;
     }
     let pace = w.dot(w);
     // (d.w)² >= w² (d² - s²), the textbook's discriminant, with room for its rounding.
@@ -62,14 +72,23 @@ mod tests {
             &Vector3::new(5.0, 0.0, 0.0),
             &Vector3::new(-2.0, 0.0, 0.0),
             1.0,
+            f64::INFINITY,
         );
         assert_eq!(meet, Some(2.0));
         let away = clock_to_contact(
             &Vector3::new(5.0, 0.0, 0.0),
             &Vector3::new(2.0, 0.0, 0.0),
             1.0,
+            f64::INFINITY,
         );
         assert_eq!(away, None);
+        let late = clock_to_contact(
+            &Vector3::new(5.0, 0.0, 0.0),
+            &Vector3::new(-2.0, 0.0, 0.0),
+            1.0,
+            1.0,
+        );
+        assert_eq!(late, None);
     }
 
     /// Target of 1 mm at 1 km, hit off centre: the double must stay within a few ulps of the
@@ -79,8 +98,10 @@ mod tests {
         for offset in [0.0, 0.3e-3, 0.999e-3, 0.999_999e-3] {
             let (d, w) = ([-800.0, 600.0 + offset, 0.1], [1e6 * 0.8, -1e6 * 0.6, 0.0]);
             let shifted = [d[0], d[1], 0.0];
-            let double = clock_to_contact(&vector::<f64>(shifted), &vector(w), 1e-3).unwrap();
-            let wide = clock_to_contact(&vector::<Wide>(shifted), &vector(w), Wide::from_f64(1e-3));
+            let double =
+                clock_to_contact(&vector::<f64>(shifted), &vector(w), 1e-3, 1.0).unwrap();
+            let (sum, before) = (Wide::from_f64(1e-3), Wide::from_f64(1.0));
+            let wide = clock_to_contact(&vector::<Wide>(shifted), &vector(w), sum, before);
             let off = (double / wide.unwrap().to_f64() - 1.0).abs();
             assert!(off < 4.0 * f64::EPSILON, "{offset}: {off:e}");
         }

@@ -27,6 +27,20 @@ struct Place {
     folded: [u32; 3],
 }
 
+/// The bodies of a cell: the first few side by side in memory, more of them as a chain.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    /// From the front; `NONE` where there is no more.
+    few: [u32; 3],
+    /// First of the chain.
+    more: u32,
+}
+
+const EMPTY: Cell = Cell {
+    few: [NONE; 3],
+    more: NONE,
+};
+
 /// Cubic cells at least as wide as the largest sphere, in a table that repeats in space.
 ///
 /// Spheres in contact are in the same cell or in neighbours. As the table repeats, space may be
@@ -37,7 +51,8 @@ pub(super) struct Grid<R: Real> {
     side: R,
     origin: Vector3<R>,
     counts: [u32; 3],
-    heads: Vec<u32>,
+    cells: Vec<Cell>,
+    /// The next of a chain. Shape: `[body]`.
     next: Vec<u32>,
     places: Vec<Place>,
 }
@@ -66,7 +81,7 @@ impl<R: Real> Grid<R> {
             side: R::from_f64(side),
             origin: Vector3::from(low.map(|x| R::from_f64(x - 0.5 * diameter))),
             counts,
-            heads: vec![NONE; total],
+            cells: vec![EMPTY; total],
             next: vec![NONE; positions.len()],
             places: vec![Place::default(); positions.len()],
         };
@@ -139,7 +154,13 @@ impl<R: Real> Grid<R> {
             for y in &ys.0[..ys.1] {
                 let row = (z * self.counts[1] + y) as usize * self.counts[0] as usize;
                 for x in &xs.0[..xs.1] {
-                    let mut other = self.heads[row + *x as usize];
+                    let cell = &self.cells[row + *x as usize];
+                    for other in cell.few.iter().take_while(|other| **other != NONE) {
+                        if *other as usize != body {
+                            visit(*other as usize);
+                        }
+                    }
+                    let mut other = cell.more;
                     while other != NONE {
                         if other as usize != body {
                             visit(other as usize);
@@ -159,22 +180,40 @@ impl<R: Real> Grid<R> {
     #[allow(clippy::cast_possible_truncation, reason = "fewer bodies than 2^32")]
     fn link(&mut self, body: usize) {
         let slot = self.slot(body);
-        self.next[body] = self.heads[slot];
-        self.heads[slot] = body as u32;
+        let cell = &mut self.cells[slot];
+        if let Some(free) = cell.few.iter_mut().find(|place| **place == NONE) {
+            *free = body as u32;
+        } else {
+            self.next[body] = cell.more;
+            cell.more = body as u32;
+        }
     }
 
     fn unlink(&mut self, body: usize) {
         let slot = self.slot(body);
-        let after = self.next[body];
-        if self.heads[slot] as usize == body {
-            self.heads[slot] = after;
+        let cell = &mut self.cells[slot];
+        if let Some(place) = cell.few.iter().position(|other| *other as usize == body) {
+            // The gap is closed from the chain, else from behind.
+            if cell.more != NONE {
+                cell.few[place] = cell.more;
+                cell.more = self.next[cell.more as usize];
+                return;
+            }
+            let last = cell.few.iter().rposition(|other| *other != NONE);
+            let last = last.unwrap_or(place);
+            cell.few[place] = cell.few[last];
+            cell.few[last] = NONE;
             return;
         }
-        let mut other = self.heads[slot] as usize;
+        if cell.more as usize == body {
+            cell.more = self.next[body];
+            return;
+        }
+        let mut other = cell.more as usize;
         while self.next[other] as usize != body {
             other = self.next[other] as usize;
         }
-        self.next[other] = after;
+        self.next[other] = self.next[body];
     }
 }
 
@@ -236,6 +275,31 @@ mod tests {
                 let touching = other != body && (place - at).norm() < 2.01;
                 assert!(!touching || found.contains(&other), "{body} {other}");
             }
+        }
+    }
+
+    /// Many spheres in few cells, in and out at random, against the places that they report.
+    #[test]
+    fn crowded_cells_lose_nobody() {
+        let places: Vec<_> = (0..60)
+            .map(|i| Vector3::new(f64::from(i) * 1e-3, 0.0, 0.0))
+            .chain([Vector3::new(9.0, 0.0, 0.0)])
+            .collect();
+        let mut grid = Grid::new(&places, 1.0);
+        let mut lot = 7_u64;
+        for _ in 0..3000 {
+            lot = lot.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let (body, upper) = ((lot >> 33) as usize % 61, lot >> 63 == 0);
+            grid.cross(body, Face { axis: 0, upper });
+            let at = |other: usize| i64::from(grid.places[other].folded[0]);
+            let count = i64::from(grid.counts[0]);
+            let expected: Vec<_> = (0..61)
+                .filter(|other| {
+                    let apart = (at(*other) - at(body)).rem_euclid(count);
+                    *other != body && (apart <= 1 || apart == count - 1)
+                })
+                .collect();
+            assert_eq!(near(&grid, body), expected);
         }
     }
 

@@ -98,28 +98,13 @@ impl<R: Real> Law<R> {
                 if velocity.x.is_zero() && velocity.y.is_zero() && velocity.z.is_zero() {
                     return *state;
                 }
-                let (u, decay) = drag_clock(*rate, time);
-                State {
-                    position: position + velocity * u,
-                    velocity: velocity * decay,
-                }
+                after_drag(state, *rate, time)
             }
             Self::Gravity { acceleration } => State {
                 position: position + (velocity + acceleration * time.half()) * time,
                 velocity: velocity + acceleration * time,
             },
-            Self::Mixed { acceleration } => {
-                let (u, decay) = if rate.is_zero() {
-                    (time, R::one())
-                } else {
-                    drag_clock(rate, time)
-                };
-                let w = drag_fall(rate, time);
-                State {
-                    position: position + velocity * u + acceleration * w,
-                    velocity: velocity * decay + acceleration * u,
-                }
-            }
+            Self::Mixed { acceleration } => after_mixed(state, acceleration, rate, time),
         }
     }
 
@@ -135,6 +120,34 @@ impl<R: Real> Law<R> {
                 (spent < R::one()).then(|| -(-spent).ln_1p() / *rate)
             }
         }
+    }
+}
+
+/// The state so much time later under drag alone.
+fn after_drag<R: Real>(state: &State<R>, rate: R, time: R) -> State<R> {
+    let (u, decay) = drag_clock(rate, time);
+    State {
+        position: state.position + state.velocity * u,
+        velocity: state.velocity * decay,
+    }
+}
+
+/// The state so much time later under both forces.
+fn after_mixed<R: Real>(
+    state: &State<R>,
+    acceleration: &Vector3<R>,
+    rate: R,
+    time: R,
+) -> State<R> {
+    let (u, decay) = if rate.is_zero() {
+        (time, R::one())
+    } else {
+        drag_clock(rate, time)
+    };
+    let w = drag_fall(rate, time);
+    State {
+        position: state.position + state.velocity * u + acceleration * w,
+        velocity: state.velocity * decay + acceleration * u,
     }
 }
 

@@ -77,7 +77,6 @@ impl<'a, R: Real> Earliest<'a, R> {
     }
 
     /// Weighs a candidate against the best so far.
-    #[inline]
     fn offer(&mut self, clock: R, deed: Deed, partner_count: u32) {
         if clock > self.clock + self.near {
             return;
@@ -288,36 +287,37 @@ impl<R: Real> World<R> {
         earliest: &mut Earliest<'_, R>,
     ) {
         let them = self.state_now(other);
-        let d = me.position - them.position;
-        let w = me.velocity - them.velocity;
         let sum = self.model.reach(body, other);
-        let found = match &self.model.law {
+        match &self.model.law {
             Law::Straight | Law::Drag { .. } | Law::Gravity { .. } => {
-                let Some(clock) = clock_to_contact(&d, &w, sum) else {
-                    return;
-                };
+                let d = me.position - them.position;
+                let w = me.velocity - them.velocity;
+                let before = earliest.clock + self.model.near;
                 // Seen from each other they fly straight: what has just parted cannot meet.
-                if self.have_just_met(body, other) {
-                    return;
+                if let Some(clock) = clock_to_contact(&d, &w, sum, before)
+                    && !self.have_just_met(body, other)
+                {
+                    let kind = contact(body, other);
+                    earliest.offer(clock, Deed::Event(kind), self.balls[other].count);
                 }
-                Some((clock, true))
             }
             Law::Mixed { acceleration } => {
                 let flights = [(me, body), (&them, other)];
-                self.search_contact(&flights, acceleration, sum).clock()
+                let found = self.search_contact(&flights, acceleration, sum);
+                if let Some((clock, closes)) = found.clock() {
+                    let deed = if closes {
+                        Deed::Event(contact(body, other))
+                    } else {
+                        Deed::PlanAgain
+                    };
+                    earliest.offer(clock, deed, self.balls[other].count);
+                }
             }
-        };
-        let Some((clock, closes)) = found else { return };
-        let deed = if closes {
-            let (a, b) = (body.min(other), body.max(other));
-            Deed::Event(EventKind::Contact { a, b })
-        } else {
-            Deed::PlanAgain
-        };
-        earliest.offer(clock, deed, self.balls[other].count);
+        }
     }
 
     /// Right after their own impact, two bodies have no speed of approach but for rounding.
+    #[cold]
     fn search_contact(
         &self,
         flights: &[(&State<R>, usize); 2],
@@ -358,6 +358,11 @@ impl<R: Real> World<R> {
             }
         })
     }
+}
+
+fn contact(body: usize, other: usize) -> EventKind {
+    let (a, b) = (body.min(other), body.max(other));
+    EventKind::Contact { a, b }
 }
 
 impl<R: Real> Search<R> {

@@ -87,8 +87,11 @@ impl<R: Real> Queue<R> {
     /// Every body with a time up to `limit`, into `found`.
     pub fn up_to(&self, limit: R, found: &mut Vec<usize>) {
         found.clear();
-        let mut open = vec![1];
-        while let Some(node) = open.pop() {
+        // Depth first: never more nodes open than the tree has levels.
+        let (mut open, mut count) = ([1_usize; usize::BITS as usize + 1], 1);
+        while count > 0 {
+            count -= 1;
+            let node = open[count];
             if !(self.nodes[node].0 <= limit) {
                 continue;
             }
@@ -97,7 +100,8 @@ impl<R: Real> Queue<R> {
                 let due = (start..start + BLOCK).filter(|body| self.times[*body] <= limit);
                 found.extend(due);
             } else {
-                open.extend([2 * node + 1, 2 * node]);
+                (open[count], open[count + 1]) = (2 * node + 1, 2 * node);
+                count += 2;
             }
         }
     }

@@ -47,6 +47,14 @@ impl<R: Real> FlightSimulation<R> {
             self.crowd = crowd;
             return None;
         }
+        // Two bodies that plan the same impact with each other are no crowd.
+        if let [a, b] = crowd[..]
+            && self.agendas[a].planned.rank == self.agendas[b].planned.rank
+            && self.agendas[a].planned.rank != INTERNAL
+        {
+            self.crowd = crowd;
+            return Some(a);
+        }
         self.note_simultaneous(&crowd, near);
         let limit = due + self.world.tie;
         let passed = self

@@ -13,7 +13,10 @@ use crate::recording::Wall;
 const GRID_FROM: usize = 40;
 
 /// A body at its last event; between events it is not touched.
+///
+/// In doubles it fills one line of the cache, and looking at a neighbour loads just that.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub(super) struct Ball<R: Real> {
     /// State at `epoch`.
     pub state: State<R>,
