@@ -133,12 +133,7 @@ fn after_drag<R: Real>(state: &State<R>, rate: R, time: R) -> State<R> {
 }
 
 /// The state so much time later under both forces.
-fn after_mixed<R: Real>(
-    state: &State<R>,
-    acceleration: &Vector3<R>,
-    rate: R,
-    time: R,
-) -> State<R> {
+fn after_mixed<R: Real>(state: &State<R>, acceleration: &Vector3<R>, rate: R, time: R) -> State<R> {
     let (u, decay) = if rate.is_zero() {
         (time, R::one())
     } else {
