@@ -22,9 +22,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = args
-        .engines
-        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
+    let specs =
+        args.engines
+            .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched", "exact"])?;
     let case = scene_or_case(&args.scene, &args.library.library())?;
     let plans = specs
         .iter()
@@ -40,7 +40,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 fn in_words(plan: &Plan, notes: &[String]) -> String {
-    let mut text = format!("{}, step {} s\n", plan.engine, plan.step);
+    let step = plan
+        .step
+        .map_or_else(|| "no step".to_owned(), |step| format!("step {step} s"));
+    let mut text = format!("{}, {step}\n", plan.engine);
     for (number, phase) in plan.phases.iter().enumerate() {
         // Writing to a string cannot fail.
         let _ = writeln!(

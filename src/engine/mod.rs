@@ -12,7 +12,9 @@ mod steps;
 pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
 pub use record::record;
-pub use spec::{EngineKind, EngineSpec, Forces, Precision, RapierSettings, engine, engines};
+pub use spec::{
+    EngineKind, EngineSpec, ExactSettings, Forces, Precision, RapierSettings, engine, engines,
+};
 pub use steps::{DEFAULT_DT, StepGrid};
 
 use std::collections::BTreeMap;
@@ -55,6 +57,7 @@ pub fn prepare(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Box<dyn Simu
     let grid = StepGrid::new(scene, dt)?;
     match &spec.kind {
         EngineKind::Impulse => Ok(Box::new(ImpulseSimulation::new(scene, grid))),
+        EngineKind::Exact(_) => exact::simulation(scene),
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::simulation(scene, settings, grid),
         #[cfg(not(feature = "rapier"))]
@@ -71,6 +74,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     let grid = StepGrid::new(scene, dt)?;
     let phases = match &spec.kind {
         EngineKind::Impulse => ImpulseSimulation::new(scene, grid).phases(),
+        EngineKind::Exact(settings) => exact::phases(scene, *settings)?,
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid)?,
         #[cfg(not(feature = "rapier"))]
@@ -78,7 +82,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     };
     Ok(Plan {
         engine: spec.name.clone(),
-        step: grid.step,
+        step: spec.takes_steps().then_some(grid.step),
         phases,
     })
 }
@@ -92,6 +96,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
 pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     match &spec.kind {
         EngineKind::Impulse => impulse::notes(scene),
+        EngineKind::Exact(_) => Vec::new(),
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::notes(scene, settings),
         #[cfg(not(feature = "rapier"))]
@@ -104,11 +109,16 @@ pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
 #[must_use]
 pub fn warnings(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     match &spec.kind {
-        EngineKind::Impulse => Vec::new(),
-        #[cfg(feature = "rapier")]
-        EngineKind::Rapier(settings) => rapier::warnings(scene, settings),
-        #[cfg(not(feature = "rapier"))]
-        EngineKind::Rapier(_) => Vec::new(),
+        EngineKind::Impulse | EngineKind::Exact(_) => Vec::new(),
+        EngineKind::Rapier(settings) => {
+            #[cfg(feature = "rapier")]
+            return rapier::warnings(scene, settings);
+            #[cfg(not(feature = "rapier"))]
+            return {
+                let _ = (scene, settings);
+                Vec::new()
+            };
+        }
     }
 }
 

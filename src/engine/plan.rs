@@ -27,9 +27,9 @@ impl Phase {
 pub struct Plan {
     /// Name of the engine.
     pub engine: String,
-    /// The step taken, s.
+    /// The step taken, s; none for an engine that goes from event to event.
     #[serde(rename = "step_s")]
-    pub step: f64,
+    pub step: Option<f64>,
     /// The phases in order.
     pub phases: Vec<Phase>,
 }

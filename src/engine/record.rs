@@ -1,6 +1,6 @@
 //! The recorder: drives a simulation from sample to sample and keeps what it sees.
 
-use super::{EngineSpec, StepGrid, prepare};
+use super::{EngineKind, EngineSpec, ExactSettings, StepGrid, exact, prepare};
 use crate::error::Result;
 use crate::recording::{Outcome, Recording, initial_states};
 use crate::scene::Scene;
@@ -12,9 +12,13 @@ use crate::scene::Scene;
 /// # Errors
 /// As [`prepare`]. A blow-up is no error but the recording's outcome.
 pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
+    if spec.kind == EngineKind::Exact(ExactSettings { certify: true }) {
+        return exact::record(scene, &spec.name);
+    }
     let mut simulation = prepare(scene, spec, dt)?;
     let mut recording = Recording::at_start(&spec.name, scene);
-    recording.step = Some(StepGrid::new(scene, dt)?.step);
+    let step = StepGrid::new(scene, dt)?.step;
+    recording.step = spec.takes_steps().then_some(step);
     let mut states = initial_states(scene);
     for sample in 1..=scene.sample_count() {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));

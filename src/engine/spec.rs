@@ -21,8 +21,17 @@ pub struct EngineSpec {
 pub enum EngineKind {
     /// The hand-written impulse solver.
     Impulse,
+    /// The event-driven exact engine.
+    Exact(ExactSettings),
     /// A Rapier world.
     Rapier(RapierSettings),
+}
+
+/// Settings of the exact engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct ExactSettings {
+    /// Whether a second computation certifies the digits of the first.
+    pub certify: bool,
 }
 
 /// Floating-point numbers inside Rapier.
@@ -95,11 +104,25 @@ impl RapierSettings {
 }
 
 impl EngineSpec {
+    /// The same engine without the work of certifying its digits.
+    #[must_use]
+    pub fn uncertified(&self) -> Self {
+        let kind = match &self.kind {
+            EngineKind::Exact(_) => EngineKind::Exact(ExactSettings { certify: false }),
+            kind @ (EngineKind::Impulse | EngineKind::Rapier(_)) => kind.clone(),
+        };
+        Self {
+            kind,
+            ..self.clone()
+        }
+    }
+
     /// Whether it computes step by step, with an error that depends on the step.
     #[must_use]
     pub fn takes_steps(&self) -> bool {
         match self.kind {
             EngineKind::Impulse | EngineKind::Rapier(_) => true,
+            EngineKind::Exact(_) => false,
         }
     }
 
@@ -107,7 +130,7 @@ impl EngineSpec {
     #[must_use]
     pub fn is_built(&self) -> bool {
         match self.kind {
-            EngineKind::Impulse => true,
+            EngineKind::Impulse | EngineKind::Exact(_) => true,
             EngineKind::Rapier(_) => cfg!(feature = "rapier"),
         }
     }
@@ -119,6 +142,14 @@ impl EngineSpec {
             EngineKind::Impulse => "Symplectic Euler, impulses at the first overlap, push-out by \
                                     (1 + e)/2 of it on each side."
                 .to_owned(),
+            EngineKind::Exact(settings) if settings.certify => {
+                "From event to event without a time step, computed more than once to certify its \
+                 own digits."
+                    .to_owned()
+            }
+            EngineKind::Exact(_) => {
+                "From event to event without a time step, in doubles, nothing certified.".to_owned()
+            }
             EngineKind::Rapier(settings) => settings.describe(),
         }
     }
@@ -191,6 +222,16 @@ pub fn engines() -> Vec<EngineSpec> {
             "rapier-matched",
             "rapier3d-f64 made to compute what the lecture computes",
             EngineKind::Rapier(RapierSettings::matched()),
+        ),
+        row(
+            "exact",
+            "event-driven, with certified digits",
+            EngineKind::Exact(ExactSettings { certify: true }),
+        ),
+        row(
+            "exact-fast",
+            "event-driven, without certification: for speed",
+            EngineKind::Exact(ExactSettings { certify: false }),
         ),
     ]
 }

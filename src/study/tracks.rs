@@ -38,7 +38,7 @@ pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
             sample_every,
             ..scene.clone()
         },
-        spec,
+        &spec.uncertified(),
         dt,
     )?;
     // A recording ends with its last finite sample on the scene's own grid; so does its path.
