@@ -38,6 +38,7 @@ struct VoiceRow {
     energy: String,
     momentum: String,
     penetration: String,
+    digits: String,
 }
 
 #[derive(Serialize)]
@@ -111,6 +112,17 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
             )
         })
         .collect();
+    let undetermined = summary.voices.iter().filter_map(|voice| {
+        let from = voice.undetermined.as_ref()?;
+        let spread = with_unit(from.spread, summary.length_unit.symbol());
+        let time = engineering(from.time_s);
+        let told = format!(
+            "finds the scene undetermined by the model from {time} s on: simultaneous events in \
+             another order end up to {spread} apart, and no engine is called wrong for it."
+        );
+        Some((voice.voice.clone(), told))
+    });
+    found.extend(undetermined);
     let warned = summary.voices.iter().flat_map(|voice| {
         let warning = |text: &String| (voice.voice.clone(), format!("bends the scene: {text}."));
         voice.warnings.iter().map(warning)
@@ -219,6 +231,9 @@ fn voice_row(summary: &Summary, voice: &VoiceSummary, unit: &str) -> VoiceRow {
         rests: voice.events.rests,
         energy,
         momentum,
+        digits: voice.digits_min.map_or("–".into(), |digits| {
+            format!("{} / {}", digits.positions, digits.velocities)
+        }),
         penetration: with_unit(drift.max_penetration, unit),
     }
 }
