@@ -1,6 +1,6 @@
 //! What an event costs: gases of spheres, and a four-ball shot beside the lecture's solver.
 //! `cargo bench --bench exact_flight`
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::cast_precision_loss)]
 
 #[path = "support/paired.rs"]
 mod paired;
@@ -89,7 +89,9 @@ fn shot(name: &str) {
         },
     );
     let events = whole(&scene).event_count();
-    println!("{name}, {events} events: A exact, whole; B lecture at dt 1e-3, a tenth of it: {result}");
+    println!(
+        "{name}, {events} events: A exact, whole; B lecture at dt 1e-3, a tenth of it: {result}"
+    );
 }
 
 fn whole(scene: &Scene) -> FlightSimulation<f64> {

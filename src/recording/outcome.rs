@@ -71,7 +71,10 @@ impl Outcome {
             Self::Collapsed { time, a, b } => format!(
                 "impacts ran away at t = {time} s (`{}` and {}); the recording ends before it",
                 scene.bodies[*a].name,
-                b.map_or("a wall".to_owned(), |b| format!("`{}`", scene.bodies[b].name))
+                b.map_or("a wall".to_owned(), |b| format!(
+                    "`{}`",
+                    scene.bodies[b].name
+                ))
             ),
         }
     }

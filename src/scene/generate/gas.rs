@@ -153,8 +153,13 @@ mod tests {
                 seed: 1,
             };
             let scene = recipe.scene().unwrap();
-            assert!(scene.warnings().is_empty(), "{cells}: {:?}", scene.warnings());
+            assert!(
+                scene.warnings().is_empty(),
+                "{cells}: {:?}",
+                scene.warnings()
+            );
             let half = scene.effects.cushions.unwrap().half_width;
+            #[allow(clippy::cast_precision_loss, reason = "some ten thousand")]
             let spheres = scene.bodies.len() as f64 * std::f64::consts::PI / 6.0;
             assert!((spheres / (2.0 * half).powi(3) - filling).abs() < 1e-12);
         }
@@ -163,6 +168,12 @@ mod tests {
             filling: 0.6,
             seed: 1,
         };
-        assert!(tight.scene().unwrap_err().to_string().contains("between the walls"));
+        assert!(
+            tight
+                .scene()
+                .unwrap_err()
+                .to_string()
+                .contains("between the walls")
+        );
     }
 }

@@ -98,8 +98,7 @@ mod tests {
         for offset in [0.0, 0.3e-3, 0.999e-3, 0.999_999e-3] {
             let (d, w) = ([-800.0, 600.0 + offset, 0.1], [1e6 * 0.8, -1e6 * 0.6, 0.0]);
             let shifted = [d[0], d[1], 0.0];
-            let double =
-                clock_to_contact(&vector::<f64>(shifted), &vector(w), 1e-3, 1.0).unwrap();
+            let double = clock_to_contact(&vector::<f64>(shifted), &vector(w), 1e-3, 1.0).unwrap();
             let (sum, before) = (Wide::from_f64(1e-3), Wide::from_f64(1.0));
             let wide = clock_to_contact(&vector::<Wide>(shifted), &vector(w), sum, before);
             let off = (double / wide.unwrap().to_f64() - 1.0).abs();

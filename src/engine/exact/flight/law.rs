@@ -58,7 +58,7 @@ impl<R: Real> Law<R> {
             .effects
             .gravity
             .map_or([0.0; 3], |gravity| gravity.acceleration);
-        let falls = acceleration != [0.0; 3];
+        let falls = acceleration.iter().any(|a| a.abs() > 0.0);
         let rate = fixed.first().map_or(R::zero(), |body| body.rate);
         let shared = fixed.iter().all(|body| body.rate == rate);
         match (shared, rate > R::zero(), falls) {
@@ -133,12 +133,7 @@ fn after_drag<R: Real>(state: &State<R>, rate: R, time: R) -> State<R> {
 }
 
 /// The state so much time later under both forces.
-fn after_mixed<R: Real>(
-    state: &State<R>,
-    acceleration: &Vector3<R>,
-    rate: R,
-    time: R,
-) -> State<R> {
+fn after_mixed<R: Real>(state: &State<R>, acceleration: &Vector3<R>, rate: R, time: R) -> State<R> {
     let (u, decay) = if rate.is_zero() {
         (time, R::one())
     } else {

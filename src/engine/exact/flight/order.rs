@@ -78,6 +78,10 @@ mod tests {
         let mut backwards = sorted.map(|kind| TieOrder::Backwards.rank(kind));
         backwards.reverse();
         assert!(backwards.is_sorted());
-        assert!(sorted.iter().all(|kind| TieOrder::Drawn(1).rank(*kind) < INTERNAL));
+        assert!(
+            sorted
+                .iter()
+                .all(|kind| TieOrder::Drawn(1).rank(*kind) < INTERNAL)
+        );
     }
 }

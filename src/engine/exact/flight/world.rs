@@ -124,7 +124,12 @@ impl<R: Real> World<R> {
 
     /// Visits every body that this one might touch before either changes its cell.
     #[inline]
-    pub fn for_each_partner(&self, body: usize, entered: Option<Face>, mut visit: impl FnMut(usize)) {
+    pub fn for_each_partner(
+        &self,
+        body: usize,
+        entered: Option<Face>,
+        mut visit: impl FnMut(usize),
+    ) {
         if self.model.contact.is_none() {
             return;
         }
