@@ -235,3 +235,75 @@ impl One for Wide {
         Self::from_f64(1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of the size of the value, in units of the last place.
+    fn off(found: Wide, expected: [f64; 2]) -> f64 {
+        let error = found - Wide::sum(expected[0], expected[1]);
+        error.to_f64().abs() / (expected[0].abs() * Wide::EPSILON)
+    }
+
+    /// Values by mpmath at 60 digits, as the two doubles nearest to them.
+    #[test]
+    fn functions_are_good_to_thirty_digits() {
+        let wide = Wide::from_f64;
+        let values = [
+            (
+                wide(1.0) / wide(3.0),
+                [0.333_333_333_333_333_3, 1.850_371_707_708_594e-17],
+            ),
+            (
+                wide(2.0).sqrt(),
+                [std::f64::consts::SQRT_2, -9.667_293_313_452_913e-17],
+            ),
+            (
+                wide(1.0).exp(),
+                [std::f64::consts::E, 1.445_646_891_729_250_2e-16],
+            ),
+            (
+                wide(3.0).ln(),
+                [1.098_612_288_668_109_8, -9.071_297_235_001_53e-17],
+            ),
+        ];
+        for (found, expected) in values {
+            assert!(
+                off(found, expected) < 16.0,
+                "{expected:?}: {}",
+                off(found, expected)
+            );
+        }
+    }
+
+    #[test]
+    fn exponential_and_logarithm_undo_each_other() {
+        for x in [
+            -300.0, -7.3, -0.51, -0.49, -1e-3, 1e-25, 0.2, 0.7, 3.0, 250.0,
+        ] {
+            let x = Wide::from_f64(x);
+            let back = x.exp().ln();
+            let room = 32.0 * Wide::EPSILON * (1.0 + x.to_f64().abs());
+            assert!((back - x).to_f64().abs() < room, "{x:?} {back:?}");
+            if x.to_f64() > -40.0 && x.to_f64() < 40.0 {
+                let back = x.exp_m1().ln_1p();
+                // Below -1 exp(x) - 1 forgets x: an ulp of it is exp(-x) ulps of x.
+                let room = 32.0 * Wide::EPSILON * x.to_f64().abs() * (-x.to_f64()).exp().max(1.0);
+                assert!((back - x).to_f64().abs() <= room, "{x:?} {back:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn quotients_multiply_back() {
+        for (a, b) in [(1.0, 3.0), (7.0, 1e-9), (1e20, -0.3), (-2.0, 1.0 + 1e-15)] {
+            let (a, b) = (Wide::from_f64(a), Wide::from_f64(b) + Wide::from_f64(1e-20));
+            let error = (a / b * b - a).to_f64().abs();
+            assert!(
+                error < 8.0 * Wide::EPSILON * a.to_f64().abs(),
+                "{a:?} {b:?}"
+            );
+        }
+    }
+}

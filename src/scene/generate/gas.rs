@@ -159,6 +159,7 @@ mod tests {
                 scene.warnings()
             );
             let half = scene.effects.cushions.unwrap().half_width;
+            #[allow(clippy::cast_precision_loss, reason = "some ten thousand")]
             let spheres = scene.bodies.len() as f64 * std::f64::consts::PI / 6.0;
             assert!((spheres / (2.0 * half).powi(3) - filling).abs() < 1e-12);
         }

@@ -247,7 +247,7 @@ fn undetermined(
     ] {
         let mut other = FlightSimulation::<Wide>::new(scene, order)?;
         let mut states = initial_states(scene);
-        for sample in 1..recording.sample_count() {
+        for (sample, parting) in growth.iter().enumerate().skip(1) {
             if other.advance_to(sample, None).is_some() {
                 break;
             }
@@ -258,7 +258,7 @@ fn undetermined(
                 .fold(0.0, f64::max);
             // Other orders also move events by the width of an instant, some hundred roundings
             // of a double, which grow as those of the run in doubles do.
-            let same = (SAME * scale.diagonal).max(1e4 * growth[sample].in_doubles);
+            let same = (SAME * scale.diagonal).max(1e4 * parting.in_doubles);
             if apart > same {
                 first = first.min(sample);
                 spread = spread.max(apart);

@@ -70,12 +70,14 @@ impl<R: Real> Grid<R> {
         let diameter = 2.0 * MARGIN * radius_max.to_f64();
         let extent = [0, 1, 2].map(|axis| high[axis] - low[axis] + diameter);
         let side = side_of(&extent, diameter, positions.len());
+        #[allow(clippy::cast_precision_loss, reason = "a bound")]
+        let most = (4.0 * positions.len() as f64).min(1e6);
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "side_of keeps the count of cells near the count of bodies"
         )]
-        let counts = extent.map(|length| (length / side).ceil().clamp(1.0, 1e6) as u32);
+        let counts = extent.map(|length| (length / side).ceil().clamp(1.0, most) as u32);
         let total = counts.iter().map(|n| *n as usize).product();
         let mut grid = Self {
             side: R::from_f64(side),
@@ -118,7 +120,7 @@ impl<R: Real> Grid<R> {
     /// Coordinate of a face of a body's present cell.
     #[inline]
     pub fn coordinate(&self, body: usize, face: Face) -> R {
-        let cell = self.places[body].cell[face.axis] + i32::from(face.upper);
+        let cell = self.places[body].cell[face.axis].saturating_add(i32::from(face.upper));
         self.origin[face.axis] + self.side * R::from_f64(f64::from(cell))
     }
 
@@ -128,10 +130,10 @@ impl<R: Real> Grid<R> {
         let (place, count) = (&mut self.places[body], self.counts[face.axis]);
         let (cell, folded) = (&mut place.cell[face.axis], &mut place.folded[face.axis]);
         if face.upper {
-            *cell += 1;
+            *cell = cell.saturating_add(1);
             *folded = up(*folded, count);
         } else {
-            *cell -= 1;
+            *cell = cell.saturating_sub(1);
             *folded = down(*folded, count);
         }
         self.link(body);
@@ -305,23 +307,21 @@ mod tests {
 
     #[test]
     fn a_body_that_leaves_is_found_in_its_new_cell() {
-        let places = vec![
-            Vector3::new(0.0, 0.0, 0.0),
-            Vector3::new(9.0, 0.0, 0.0),
-            Vector3::new(30.0, 0.0, 0.0),
-        ];
+        let places: Vec<_> = (0..60)
+            .map(|i| Vector3::new(f64::from(i) * 9.0, 0.0, 0.0))
+            .collect();
         let mut grid = Grid::new(&places, 1.0);
-        assert!(near(&grid, 0).is_empty());
         let face = Face {
             axis: 0,
             upper: true,
         };
-        while !near(&grid, 0).contains(&1) {
+        assert!(!near(&grid, 0).contains(&30));
+        while !near(&grid, 0).contains(&30) {
             grid.cross(0, face);
-            assert!(grid.coordinate(0, face) < 30.0, "passed it by");
+            assert!(grid.coordinate(0, face) < 270.0, "passed it by");
         }
         let mut entered = Vec::new();
         grid.for_each_near(0, Some(face), |other| entered.push(other));
-        assert_eq!(entered, [1]);
+        assert_eq!(entered, [30]);
     }
 }

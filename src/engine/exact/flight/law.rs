@@ -58,7 +58,7 @@ impl<R: Real> Law<R> {
             .effects
             .gravity
             .map_or([0.0; 3], |gravity| gravity.acceleration);
-        let falls = acceleration != [0.0; 3];
+        let falls = acceleration.iter().any(|a| a.abs() > 0.0);
         let rate = fixed.first().map_or(R::zero(), |body| body.rate);
         let shared = fixed.iter().all(|body| body.rate == rate);
         match (shared, rate > R::zero(), falls) {

@@ -151,7 +151,7 @@ pub(super) fn accept(scene: &Scene) -> Result<()> {
     scene.checked()?;
     let refuse = |what: String, remedy: &str| {
         Err(Error::EngineCannot {
-            engine: "exact",
+            engine: "exact".into(),
             what,
             remedy: remedy.into(),
         })
@@ -163,7 +163,9 @@ pub(super) fn accept(scene: &Scene) -> Result<()> {
             "leave these effects out",
         );
     }
-    let falls = effects.gravity.is_some_and(|g| g.acceleration != [0.0; 3]);
+    let falls = effects
+        .gravity
+        .is_some_and(|gravity| gravity.acceleration.iter().any(|a| a.abs() > 0.0));
     if falls && effects.rest.is_some_and(|rest| rest.speed > 0.0) {
         return refuse(
             "rest together with gravity has no exact meaning: a ball at the top of its flight would stop there".into(),

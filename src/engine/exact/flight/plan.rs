@@ -7,13 +7,16 @@ use super::grid::Face;
 use super::law::{Law, State};
 use super::order::{INTERNAL, TieOrder};
 use super::plane::{Approach, clock_to_plane};
-use super::search::{Gap, Search, first_closing};
+use super::search::{Opening, Search, first_closing};
 use super::world::World;
 use crate::engine::exact::real::{Real, length};
 use crate::recording::EventKind;
 
 /// Speeds of approach below this many roundings of the speeds are none, right after an impact.
 const NOISE_ROUNDINGS: f64 = 64.0;
+
+/// Bodies that are fetched from memory together.
+const BATCH: usize = 32;
 
 /// What is planned for a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +89,7 @@ impl<'a, R: Real> Earliest<'a, R> {
             Deed::PlanAgain | Deed::Nothing => INTERNAL,
         };
         let mut crowded = false;
-        if !(clock < self.clock - self.near) && self.clock.is_finite() {
+        if self.clock.is_finite() && clock >= self.clock - self.near {
             // Near in the clock, which late under drag hardly moves: compare the times.
             let [old, new] = [self.clock, clock].map(|u| self.law.time_of_clock(u));
             let (Some(old), Some(new)) = (old, new) else {
@@ -117,6 +120,7 @@ impl<'a, R: Real> Earliest<'a, R> {
     fn plan(self, now: R) -> Planned<R> {
         if self.clock.is_finite()
             && let Some(time) = self.law.time_of_clock(self.clock)
+            && time.is_finite()
         {
             return Planned {
                 time: now + time,
@@ -134,11 +138,7 @@ impl<R: Real> World<R> {
         let mut earliest = Earliest::new(self);
         self.offer_walls(body, &me, &mut earliest);
         self.offer_rest(body, &me, &mut earliest);
-        let mut looked = 0;
-        self.for_each_partner(body, None, |other| {
-            looked += 1;
-            self.offer_contact(body, &me, other, &mut earliest);
-        });
+        let looked = self.offer_contacts(body, &me, None, &mut earliest);
         let planned = earliest.plan(self.now);
         self.pair_tests += looked;
         planned
@@ -154,11 +154,7 @@ impl<R: Real> World<R> {
     ) -> Planned<R> {
         let me = self.state_now(body);
         let mut earliest = Earliest::new(self);
-        let mut looked = 0;
-        self.for_each_partner(body, Some(face), |other| {
-            looked += 1;
-            self.offer_contact(body, &me, other, &mut earliest);
-        });
+        let looked = self.offer_contacts(body, &me, Some(face), &mut earliest);
         let planned = earliest.plan(self.now);
         self.pair_tests += looked;
         if planned.time < kept.time {
@@ -196,8 +192,8 @@ impl<R: Real> World<R> {
             .then(|| self.model.law.time_of_clock(first))
             .flatten();
         match time {
-            Some(time) => (self.now + time, face),
-            None => (R::from_f64(f64::INFINITY), face),
+            Some(time) if time.is_finite() => (self.now + time, face),
+            Some(_) | None => (R::from_f64(f64::INFINITY), face),
         }
     }
 
@@ -244,8 +240,8 @@ impl<R: Real> World<R> {
                 let rate = self.model.fixed[body].rate;
                 let found = first_closing(self.time_left(), self.model.tie, |time| {
                     let State { position, velocity } = law.after(me, rate, time);
-                    Gap {
-                        gap: gap - side * (position[axis] - me.position[axis]),
+                    Opening {
+                        width: gap - side * (position[axis] - me.position[axis]),
                         rate: -side * velocity[axis],
                         bend: (acceleration[axis] - rate * velocity[axis]).abs(),
                     }
@@ -278,15 +274,50 @@ impl<R: Real> World<R> {
         earliest.offer(clock, deed, 0);
     }
 
-    #[inline]
-    fn offer_contact(
+    /// Weighs the contacts with all bodies in reach. Gives their number.
+    ///
+    /// In two passes a batch: the first does no more than to touch each body, so that all of
+    /// them come from memory at once; with 1e5 spheres that takes a third off the time.
+    fn offer_contacts(
         &self,
         body: usize,
         me: &State<R>,
-        other: usize,
+        entered: Option<Face>,
+        earliest: &mut Earliest<'_, R>,
+    ) -> u64 {
+        let mut batch = [(0, R::zero()); BATCH];
+        let (mut filled, mut looked) = (0, 0);
+        self.for_each_partner(body, entered, |other| {
+            batch[filled] = (other, self.balls[other].epoch);
+            filled += 1;
+            if filled == BATCH {
+                for (other, epoch) in batch {
+                    self.offer_contact((body, me), (other, epoch), earliest);
+                }
+                looked += filled as u64;
+                filled = 0;
+            }
+        });
+        for (other, epoch) in &batch[..filled] {
+            self.offer_contact((body, me), (*other, *epoch), earliest);
+        }
+        looked + filled as u64
+    }
+
+    #[inline]
+    fn offer_contact(
+        &self,
+        (body, me): (usize, &State<R>),
+        (other, epoch): (usize, R),
         earliest: &mut Earliest<'_, R>,
     ) {
-        let them = self.state_now(other);
+        // One more line of memory a neighbour, where the law has no use for it.
+        let rate = match self.model.law {
+            Law::Straight | Law::Drag { .. } | Law::Gravity { .. } => R::zero(),
+            Law::Mixed { .. } => self.model.fixed[other].rate,
+        };
+        let state = &self.balls[other].state;
+        let them = self.model.law.after(state, rate, self.now - epoch);
         let sum = self.model.reach(body, other);
         match &self.model.law {
             Law::Straight | Law::Drag { .. } | Law::Gravity { .. } => {
@@ -351,8 +382,8 @@ impl<R: Real> World<R> {
             };
             let unsure = noise * (length(&a.velocity) + length(&b.velocity));
             let rate = if rate.abs() < unsure { R::zero() } else { rate };
-            Gap {
-                gap: apart - sum,
+            Opening {
+                width: apart - sum,
                 rate,
                 bend,
             }

@@ -92,7 +92,7 @@ impl<R: Real> Queue<R> {
         while count > 0 {
             count -= 1;
             let node = open[count];
-            if !(self.nodes[node].0 <= limit) {
+            if self.nodes[node].0 > limit {
                 continue;
             }
             if node >= self.leaves {
@@ -134,6 +134,7 @@ mod tests {
         let mut lot = 1_u64;
         for _ in 0..5000 {
             lot = lot.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            #[allow(clippy::cast_precision_loss, reason = "24 bits")]
             let (body, time) = ((lot >> 33) as usize % 41, (lot >> 40) as f64);
             times[body] = time;
             queue.set(body, time);

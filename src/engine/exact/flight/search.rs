@@ -4,9 +4,9 @@ use crate::engine::exact::real::Real;
 
 /// A gap at one instant, and how it may change from there on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gap<R> {
+pub(super) struct Opening<R> {
     /// Distance still to go; touching at 0.
-    pub gap: R,
+    pub width: R,
     /// Rate at which it changes; negative on approach.
     pub rate: R,
     /// Bound on how fast that rate can fall from here on: `gap'' >= -bend`.
@@ -35,11 +35,15 @@ const STEPS_MAX: u32 = 200;
 /// Valid for: a bound that holds from each instant on. Source: conservative advancement,
 /// Mirtich 1996, with the second derivative in place of the first.
 /// `shortest` is a time too short to matter, above 0.
-pub(super) fn first_closing<R: Real>(until: R, shortest: R, at: impl Fn(R) -> Gap<R>) -> Search<R> {
+pub(super) fn first_closing<R: Real>(
+    until: R,
+    shortest: R,
+    at: impl Fn(R) -> Opening<R>,
+) -> Search<R> {
     let mut time = R::zero();
     for _ in 0..STEPS_MAX {
         let now = at(time);
-        let gap = now.gap.larger(R::zero());
+        let gap = now.width.larger(R::zero());
         let safe = (now.rate * now.rate + (now.bend * gap).twice()).sqrt() - now.rate;
         if safe <= R::zero() && now.bend.is_zero() {
             return Search::Open;
@@ -56,7 +60,7 @@ pub(super) fn first_closing<R: Real>(until: R, shortest: R, at: impl Fn(R) -> Ga
         }
         // Touching without approach, but bent: look again after the shortest time there is.
         time += if step > R::zero() { step } else { shortest };
-        if !(time <= until) {
+        if time > until {
             return Search::Open;
         }
     }
@@ -64,15 +68,15 @@ pub(super) fn first_closing<R: Real>(until: R, shortest: R, at: impl Fn(R) -> Ga
 }
 
 /// Newton's steps to the last digit, while they get smaller.
-fn polished<R: Real>(start: R, until: R, at: &impl Fn(R) -> Gap<R>) -> R {
+fn polished<R: Real>(start: R, until: R, at: &impl Fn(R) -> Opening<R>) -> R {
     let (mut time, mut last) = (start, until);
     for _ in 0..4 {
         let now = at(time);
         if now.rate >= R::zero() {
             break;
         }
-        let step = -now.gap / now.rate;
-        if !(step.abs() < last) {
+        let step = -now.width / now.rate;
+        if step.abs() >= last {
             break;
         }
         last = step.abs();
@@ -86,8 +90,8 @@ mod tests {
     use super::*;
 
     fn throw(until: f64, speed: f64, pull: f64, bend: f64) -> Search<f64> {
-        first_closing(until, 1e-14, |t: f64| Gap {
-            gap: 2.0 - speed * t - pull * t * t / 2.0,
+        first_closing(until, 1e-14, |t: f64| Opening {
+            width: 2.0 - speed * t - pull * t * t / 2.0,
             rate: -speed - pull * t,
             bend,
         })

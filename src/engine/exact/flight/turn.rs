@@ -7,6 +7,9 @@ use super::world::Impact;
 use crate::engine::exact::real::Real;
 use crate::recording::{Event, EventKind, EventLog, Outcome};
 
+/// Changes of cell, a body, without any event between them that are worth their while.
+const CROSSINGS_A_BODY: u64 = 20;
+
 /// At most so many instants with simultaneous events are remembered, from the first on.
 const SIMULTANEOUS_KEPT: usize = 64;
 
@@ -15,7 +18,7 @@ impl<R: Real> FlightSimulation<R> {
     pub(super) fn run_to(&mut self, time: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
         loop {
             let (due, first) = self.queue.first();
-            if !(due <= time) {
+            if due > time {
                 return None;
             }
             let near = due + self.world.model.near;
@@ -135,6 +138,7 @@ impl<R: Real> FlightSimulation<R> {
             return None;
         }
         self.world.now = self.world.now.larger(agenda.planned.time);
+        self.crossings = 0;
         if self.is_void(body) {
             self.plan(body);
             return None;
@@ -222,7 +226,17 @@ impl<R: Real> FlightSimulation<R> {
         }
     }
 
+    /// Puts a body into its next cell.
+    ///
+    /// Bodies that fly on through empty space, at any speed, would change cells for ever: if
+    /// nothing else happens for long, all pairs are planned at once and the cells given up.
     fn cross(&mut self, body: usize) {
+        self.crossings += 1;
+        if self.crossings > CROSSINGS_A_BODY * self.world.balls.len() as u64 {
+            self.world.grid = None;
+            self.plan_all();
+            return;
+        }
         let face = self.agendas[body].face;
         if let Some(grid) = &mut self.world.grid {
             grid.cross(body, face);
