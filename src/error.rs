@@ -96,6 +96,16 @@ pub enum Error {
         /// The cargo feature that brings it.
         feature: &'static str,
     },
+    /// A scene that an engine cannot compute.
+    #[error("engine `{engine}` cannot compute {what}; {remedy}")]
+    EngineCannot {
+        /// The engine.
+        engine: &'static str,
+        /// The effects or bodies that it cannot compute.
+        what: String,
+        /// What would be right.
+        remedy: &'static str,
+    },
     /// The same engine twice.
     #[error("engine `{name}` is asked for twice; name each engine once")]
     EngineTwice {

@@ -1,5 +1,6 @@
 //! *How* a scene is computed: engines, what they plan to do, and the recorder that drives them.
 
+pub mod exact;
 mod impulse;
 mod plan;
 #[cfg(feature = "rapier")]

@@ -26,6 +26,15 @@ pub enum Outcome {
         /// The body.
         body: usize,
     },
+    /// Events or steps pile up without end, or the model has no unique answer any more.
+    Collapsed {
+        /// Time up to which it was computed, s.
+        time: f64,
+        /// The first of the two bodies that it happened to.
+        body_a: usize,
+        /// The second; at a wall the same one.
+        body_b: usize,
+    },
 }
 
 impl Outcome {
@@ -42,6 +51,7 @@ impl Outcome {
             Self::Finished => "Finished",
             Self::NonFinite { .. } => "NonFinite",
             Self::Disabled { .. } => "Disabled",
+            Self::Collapsed { .. } => "Collapsed",
         }
     }
 
@@ -57,6 +67,14 @@ impl Outcome {
             Self::Disabled { time, body } => format!(
                 "`{}` was disabled by the engine at t = {time} s; the recording ends before it",
                 scene.bodies[*body].name
+            ),
+            Self::Collapsed {
+                time,
+                body_a,
+                body_b,
+            } => format!(
+                "events of `{}` and `{}` pile up without end at t = {time} s; the recording ends before it",
+                scene.bodies[*body_a].name, scene.bodies[*body_b].name
             ),
         }
     }

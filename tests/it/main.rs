@@ -6,6 +6,7 @@ mod cases;
 mod closed_forms;
 mod command_line;
 mod controls;
+mod exact_forces;
 mod hostile;
 mod invariants;
 mod layers;
