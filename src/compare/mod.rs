@@ -1,9 +1,11 @@
 //! Two or more recordings of one scene: conserved quantities, divergence, events in order.
 
+mod cluster;
 mod divergence;
 mod events;
 mod metrics;
 
+pub use cluster::{ClusterFacts, cluster_facts};
 pub use divergence::{Divergence, DivergenceSample};
 pub use events::{Disagreement, EventAgreement, compare_events};
 pub use metrics::{Drift, Metrics, metrics};

@@ -11,6 +11,9 @@ use super::touch::{Arms, Surfaces, Touch, arms};
 /// Impacts at one instant past which the rest is taken as one inelastic impact of all.
 const IMPACTS_MAX: usize = 20_000;
 
+/// Rounds of sticking and pressing at one instant; each takes energy out, few are needed.
+const ROUNDS_MAX: u32 = 50;
+
 /// Velocities that two orders of the same impacts may differ by before the model is called
 /// undetermined, relative to the largest speed.
 const SAME_ANSWER: f64 = 1e-9;
@@ -32,6 +35,8 @@ pub(super) struct Aftermath {
     pub(super) fresh: Vec<Fresh>,
     /// Whether another order of the impacts would have given another answer.
     pub(super) undetermined: bool,
+    /// Whether one of them was between surfaces that pressed on each other.
+    pub(super) in_cluster: bool,
 }
 
 /// The rules and the place of an instant.
@@ -52,8 +57,20 @@ struct Meeting<T> {
     arms: Arms<T>,
     reach: T,
     restitution: T,
+    /// A length of the size of the bodies.
+    length: f64,
+    /// A bounce that leaves slower than this is none.
+    least_bounce: f64,
+}
+
+impl<T: Real> Meeting<T> {
     /// Below this speed of approach the pair sticks.
-    stick_speed: f64,
+    fn stick_speed(&self) -> f64 {
+        if self.least_bounce == 0.0 {
+            return 0.0;
+        }
+        self.least_bounce / self.restitution.to_f64()
+    }
 }
 
 impl<T: Real> Instant<'_, T> {
@@ -72,6 +89,8 @@ impl<T: Real> Instant<'_, T> {
             impacts,
             ..Aftermath::default()
         };
+        let mut touches = aftermath.impacts.iter().map(|impact| impact.touch);
+        aftermath.in_cluster = touches.any(|touch| self.held.contains(&touch));
         if aftermath.impacts.len() > 1 {
             let mut other = before;
             let reversed: Vec<usize> = in_order.into_iter().rev().collect();
@@ -81,9 +100,47 @@ impl<T: Real> Instant<'_, T> {
                 .zip(&other)
                 .any(|(one, other)| size(&minus(one, other)) > SAME_ANSWER * fastest);
         }
-        self.stick(&meetings, noise, velocity, &mut aftermath)?;
-        self.press(&meetings, noise, velocity, &mut aftermath)?;
+        for _ in 0..ROUNDS_MAX {
+            self.stick(&meetings, noise, velocity, &mut aftermath)?;
+            self.press(&meetings, noise, velocity, &mut aftermath)?;
+            let moved = self.stop(&meetings, noise, velocity, &aftermath.held)?;
+            let approaches = |meeting: &Meeting<T>| {
+                meeting.arms.rate(velocity).to_f64() < -noise * meeting.reach.to_f64()
+            };
+            if !moved || !meetings.iter().any(approaches) {
+                break;
+            }
+        }
         Ok(aftermath)
+    }
+
+    /// Takes the speed of bounces that are none out of the pressing contacts, all together;
+    /// whether there was any.
+    fn stop(
+        &self,
+        meetings: &[Meeting<T>],
+        noise: f64,
+        velocity: &mut [Triple<T>],
+        held: &[Touch],
+    ) -> Result<bool, Touch> {
+        let held: Vec<&Meeting<T>> = meetings
+            .iter()
+            .filter(|meeting| held.contains(&meeting.touch))
+            .collect();
+        let mut pushes: Vec<T> = held.iter().map(|m| -m.arms.rate(velocity)).collect();
+        let mut speeds = held.iter().zip(&pushes);
+        if speeds.all(|(m, push)| push.to_f64().abs() <= noise * m.reach.to_f64()) {
+            return Ok(false);
+        }
+        let entry = |i: usize, j: usize| {
+            contact_matrix(&self.law.inverse_mass, &held[i].arms, &held[j].arms)
+        };
+        let factor = Cholesky::of(held.len(), entry).map_err(|row| held[row].touch)?;
+        factor.solve(&mut pushes);
+        for (meeting, push) in held.iter().zip(pushes) {
+            meeting.arms.push(push, &self.law.inverse_mass, velocity);
+        }
+        Ok(true)
     }
 
     /// Everything that touches, in the model's order.
@@ -112,26 +169,25 @@ impl<T: Real> Instant<'_, T> {
                 Touch::Pair { .. } => reach,
                 Touch::Wall { body, .. } => self.surfaces.radii[body],
             };
-            let back = (2.0 * self.bounce_height * length * press.max(0.0)).sqrt();
-            let e = restitution.to_f64();
-            let stick_speed = if back == 0.0 { 0.0 } else { back / e };
             Meeting {
                 touch,
                 arms,
                 reach: T::from_f64(reach),
                 restitution,
-                stick_speed,
+                length,
+                least_bounce: (2.0 * self.bounce_height * length * press.max(0.0)).sqrt(),
             }
         };
         touches.map(meeting).collect()
     }
 
-    /// Whether the gap is zero up to the rounding of the positions.
+    /// Whether the gap is zero up to the rounding of the positions, or to the least bounce.
     fn closed(&self, touch: Touch) -> bool {
         let bodies = touch.bodies();
         let far = bodies.map(|body| size(&self.position[body]) + self.surfaces.radii[body]);
         let gap = self.surfaces.gap(touch, self.position).to_f64();
-        gap <= closed_below::<T>(far[0].max(far[1]))
+        let least_bounce = self.bounce_height * self.surfaces.reach(touch);
+        gap <= closed_below::<T>(far[0].max(far[1])).max(least_bounce)
     }
 
     /// Impacts one after the other, sweep by sweep, until nothing approaches that does not stick.
@@ -151,7 +207,7 @@ impl<T: Real> Instant<'_, T> {
                 let alone =
                     impacts.is_empty() && self.trigger == Some((meeting.touch, Cause::Approach));
                 let least = if alone { 0.0 } else { noise };
-                if approach <= least.max(meeting.stick_speed) {
+                if approach <= least.max(meeting.stick_speed()) {
                     continue;
                 }
                 let own = contact_matrix(&self.law.inverse_mass, &meeting.arms, &meeting.arms);
@@ -205,7 +261,11 @@ impl<T: Real> Instant<'_, T> {
         Ok(())
     }
 
-    /// Which of the closed gaps that do not open press from here on.
+    /// Which of the closed gaps press from here on.
+    ///
+    /// One that opens slowly is taken for closed if the force that would press it lets the
+    /// bounce rise less than the least height; the others are let go, and asked again without
+    /// them.
     fn press(
         &self,
         meetings: &[Meeting<T>],
@@ -214,11 +274,14 @@ impl<T: Real> Instant<'_, T> {
         aftermath: &mut Aftermath,
     ) -> Result<(), Touch> {
         let applied = applied_acceleration(self.law, self.position, velocity);
+        let speed =
+            |meeting: &Meeting<T>| meeting.arms.rate(velocity).to_f64() / meeting.reach.to_f64();
+        aftermath.held.clear();
+        aftermath.fresh.clear();
         let mut close = Vec::new();
         for meeting in meetings {
             let touch = meeting.touch;
-            let rate = meeting.arms.rate(velocity).to_f64();
-            if rate > noise * meeting.reach.to_f64() {
+            if speed(meeting) > noise.max(meeting.least_bounce) {
                 aftermath.fresh.push(Fresh { touch, skip: 1 });
             } else if self.trigger == Some((touch, Cause::Release)) {
                 aftermath.fresh.push(Fresh { touch, skip: 3 });
@@ -226,19 +289,45 @@ impl<T: Real> Instant<'_, T> {
                 close.push(meeting);
             }
         }
-        let closing =
-            |meeting: &&Meeting<T>| closing(&meeting.arms, meeting.touch, &applied, velocity);
-        let rates: Vec<T> = close.iter().map(closing).collect();
-        let (pressed, _) = self.complementary(&close, &rates)?;
-        for meeting in close {
-            let touch = meeting.touch;
-            if pressed.iter().any(|pressed| pressed.touch == touch) {
-                aftermath.held.push(touch);
-            } else {
-                aftermath.fresh.push(Fresh { touch, skip: 2 });
+        loop {
+            let closing =
+                |meeting: &&Meeting<T>| closing(&meeting.arms, meeting.touch, &applied, velocity);
+            let rates: Vec<T> = close.iter().map(closing).collect();
+            let (pressed, pushes) = self.complementary(&close, &rates)?;
+            let force = |touch: Touch| {
+                let mut pairs = pressed.iter().zip(&pushes);
+                pairs
+                    .find(|(pressed, _)| pressed.touch == touch)
+                    .map(|(_, push)| push.to_f64())
+            };
+            let stays = |meeting: &Meeting<T>| {
+                let own = contact_matrix(&self.law.inverse_mass, &meeting.arms, &meeting.arms);
+                let press = force(meeting.touch).unwrap_or(0.0) * own.to_f64();
+                let height = self.bounce_height * meeting.length;
+                let least = 2.0 * height * press / meeting.reach.to_f64();
+                let speed = speed(meeting);
+                speed <= noise || speed * speed <= least
+            };
+            let before = close.len();
+            let (stay, open): (Vec<_>, Vec<_>) = close.into_iter().partition(|m| stays(m));
+            close = stay;
+            for meeting in open {
+                let touch = meeting.touch;
+                aftermath.fresh.push(Fresh { touch, skip: 1 });
             }
+            if close.len() < before {
+                continue;
+            }
+            for meeting in &close {
+                let touch = meeting.touch;
+                if force(touch).is_some() {
+                    aftermath.held.push(touch);
+                } else {
+                    aftermath.fresh.push(Fresh { touch, skip: 2 });
+                }
+            }
+            return Ok(());
         }
-        Ok(())
     }
 
     /// The meetings that push, and by how much, so that no rate stays negative.

@@ -14,8 +14,10 @@
 
 mod accuracy;
 mod bernstein;
+mod certify;
 mod cholesky;
 mod complementarity;
+mod held;
 mod impacts;
 mod law;
 mod refuse;
@@ -28,5 +30,6 @@ mod touch;
 mod watchdog;
 
 pub use accuracy::Accuracy;
+pub use certify::{Certified, Digits, certified, fast};
 pub use scalar::{Real, Wide};
-pub use simulation::ForcesSimulation;
+pub use simulation::{ForcesSimulation, Undetermined};

@@ -120,52 +120,56 @@ pub(super) struct Series<T> {
     /// Shape: `[coefficient][body]`, order coefficients.
     pub(super) acceleration: Vec<Vec<Triple<T>>>,
     pub(super) held: Vec<Held<T>>,
+    links: Vec<LinkSeries<T>>,
 }
 
 impl<T: Real> Series<T> {
-    /// Expands the motion from a state.
+    /// The motion at a state, with no power of time yet.
     ///
     /// `held` contacts are kept closed by forces that make their gaps' accelerations vanish at
-    /// every order; `factor` is their matrix, see [`contact_matrix`].
-    pub(super) fn expand(
+    /// every order. `tau` is the scale of time, `order` what will be asked for.
+    pub(super) fn at(
         law: &Law<T>,
-        start: (&[Triple<T>], &[Triple<T>]),
+        start: (Vec<Triple<T>>, Vec<Triple<T>>),
         held: &[Touch],
-        factor: &Cholesky<T>,
         (order, tau): (usize, f64),
     ) -> Self {
+        let (position, velocity) = start;
         let held = held.iter().map(|touch| Held {
             touch: *touch,
             force: Vec::with_capacity(order),
-            arms: arms(*touch, start.0),
+            arms: arms(*touch, &position),
         });
-        let mut series = Self {
+        Self {
             tau,
-            position: vec![start.0.to_vec()],
-            velocity: vec![start.1.to_vec()],
-            acceleration: Vec::with_capacity(order),
             held: held.collect(),
-        };
-        let mut links = vec![LinkSeries::with_order(order); law.links.len()];
-        for k in 0..order {
-            let mut acceleration = series.applied(law, &mut links, k);
-            series.hold(law, factor, &mut acceleration, k);
-            let step = T::from_f64(tau) / T::from_f64(as_real(k + 1));
+            position: vec![position],
+            velocity: vec![velocity],
+            acceleration: Vec::with_capacity(order),
+            links: vec![LinkSeries::with_order(order); law.links.len()],
+        }
+    }
+
+    /// Goes on to that order; `factor` is the [matrix of contacts](contact_matrix).
+    pub(super) fn extend(&mut self, law: &Law<T>, factor: &Cholesky<T>, order: usize) {
+        for k in self.order()..order {
+            let mut acceleration = self.applied(law, k);
+            self.hold(law, factor, &mut acceleration, k);
+            let step = T::from_f64(self.tau) / T::from_f64(as_real(k + 1));
             let next = |of: &[Triple<T>]| of.iter().map(|x| x.map(|x| x * step)).collect();
             let velocity = next(&acceleration);
-            let position = next(&series.velocity[k]);
-            series.acceleration.push(acceleration);
-            series.velocity.push(velocity);
-            series.position.push(position);
+            let position = next(&self.velocity[k]);
+            self.acceleration.push(acceleration);
+            self.velocity.push(velocity);
+            self.position.push(position);
         }
-        series
     }
 
     /// Coefficient k of the accelerations without contact forces.
-    fn applied(&self, law: &Law<T>, links: &mut [LinkSeries<T>], k: usize) -> Vec<Triple<T>> {
+    fn applied(&mut self, law: &Law<T>, k: usize) -> Vec<Triple<T>> {
         let (position, velocity) = (&self.position[k], &self.velocity[k]);
         let mut acceleration = vec![[T::zero(); 3]; position.len()];
-        for (link, series) in law.links.iter().zip(links) {
+        for (link, series) in law.links.iter().zip(&mut self.links) {
             let [a, b] = link.ends;
             let mut force = series.extend(link, minus(&position[b], &position[a]));
             if let Some(damping) = link.damping {
@@ -277,15 +281,8 @@ pub(super) fn applied_acceleration<T: Real>(
     position: &[Triple<T>],
     velocity: &[Triple<T>],
 ) -> Vec<Triple<T>> {
-    let series = Series {
-        tau: 1.0,
-        position: vec![position.to_vec()],
-        velocity: vec![velocity.to_vec()],
-        acceleration: Vec::new(),
-        held: Vec::new(),
-    };
-    let mut links = vec![LinkSeries::with_order(1); law.links.len()];
-    series.applied(law, &mut links, 0)
+    let start = (position.to_vec(), velocity.to_vec());
+    Series::at(law, start, &[], (1, 1.0)).applied(law, 0)
 }
 
 /// Entry of the matrix of contacts: what a push at one does to the rate of the other.

@@ -1,15 +1,15 @@
 //! The simulation: steps, the events that end them early, samples in between.
 
-use super::accuracy::Accuracy;
+use super::accuracy::{Accuracy, UNDETERMINED_BOUNCE_HEIGHT};
 use super::cholesky::Cholesky;
 use super::impacts::{Aftermath, Instant, closed_below};
 use super::law::Law;
 use super::refuse::check;
 use super::scalar::{Real, Triple, size};
 use super::search::{Cause, Fresh, Upcoming, first_event};
-use super::series::{Series, contact_matrix};
+use super::series::Series;
 use super::span::span;
-use super::touch::{Surfaces, Touch, arms};
+use super::touch::{Surfaces, Touch};
 use super::watchdog::Watchdog;
 use crate::engine::Simulation;
 use crate::error::Result;
@@ -17,14 +17,23 @@ use crate::physics::BodyState;
 use crate::recording::{Event, EventLog, Outcome, Work, initial_states};
 use crate::scene::Scene;
 
+/// Order that is tried after an event, before the full one.
+const SHORT_ORDER: usize = 8;
+
+/// Steps between these multiples of the scale of time keep every coefficient a number.
+const SCALES: std::ops::Range<f64> = 1e-6..1e6;
+
+/// Scales of time that are tried.
+const TRIES_MAX: u32 = 16;
+
 /// Event-driven motion of a scene with attraction or springs.
 ///
 /// Valid for: attraction, springs, drag, uniform gravity, contact and cushions in any
 /// combination; rest only without forces.
 #[derive(Debug, Clone)]
 pub struct ForcesSimulation<T: Real> {
-    law: Law<T>,
-    surfaces: Surfaces<T>,
+    pub(super) law: Law<T>,
+    pub(super) surfaces: Surfaces<T>,
     accuracy: Accuracy,
     sample_every: f64,
     sample: usize,
@@ -34,14 +43,27 @@ pub struct ForcesSimulation<T: Real> {
     position: Vec<Exact<Triple<T>>>,
     velocity: Vec<Exact<Triple<T>>>,
     /// Contacts that press.
-    held: Vec<Touch>,
+    pub(super) held: Vec<Touch>,
     fresh: Vec<Fresh>,
     step: Option<Step<T>>,
     tau: f64,
+    /// Whether the last step ended with an event.
+    after_event: bool,
     watchdog: Watchdog,
     outcome: Option<Outcome>,
-    undetermined_from: Option<f64>,
+    undetermined: Option<Undetermined>,
+    unsettled: Option<Undetermined>,
     work: Work,
+}
+
+/// An instant at which another order of simultaneous impacts would have given another answer:
+/// from there on the model itself has no single one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undetermined {
+    /// Time, s.
+    pub time: f64,
+    /// The bodies of the impact that set it off, the same one twice at a wall.
+    pub bodies: [usize; 2],
 }
 
 /// A sum with what rounding took from it.
@@ -85,20 +107,28 @@ impl<T: Real> ForcesSimulation<T> {
             fresh: Vec::new(),
             step: None,
             tau: power_of_two(scene.sample_every),
+            after_event: false,
             watchdog: Watchdog::new(scene.duration),
             outcome: None,
-            undetermined_from: None,
+            undetermined: None,
+            unsettled: None,
             work: Work::default(),
         };
         simulation.set_state(0, &initial_states(scene));
         Ok(simulation)
     }
 
-    /// Time, s, from which another order of simultaneous impacts would have given another
-    /// answer: the model itself has no single one from there on.
+    /// Where the model ceased to have a single answer, if it did.
     #[must_use]
-    pub fn undetermined_from(&self) -> Option<f64> {
-        self.undetermined_from
+    pub fn undetermined(&self) -> Option<Undetermined> {
+        self.undetermined
+    }
+
+    /// Where an impact on a cluster of pressing contacts first had no single answer: from there
+    /// on the cluster cannot be certified, and bounces in it are ended sooner.
+    #[must_use]
+    pub fn unsettled(&self) -> Option<Undetermined> {
+        self.unsettled
     }
 
     /// Contacts that press at present.
@@ -107,15 +137,30 @@ impl<T: Real> ForcesSimulation<T> {
         self.held.len()
     }
 
-    fn positions(&self) -> Vec<Triple<T>> {
+    fn bounce_height(&self) -> f64 {
+        match self.unsettled {
+            Some(_) => UNDETERMINED_BOUNCE_HEIGHT.max(self.accuracy.bounce_height),
+            None => self.accuracy.bounce_height,
+        }
+    }
+
+    pub(super) fn positions(&self) -> Vec<Triple<T>> {
         self.position.iter().map(|exact| exact.sum).collect()
     }
 
-    fn velocities(&self) -> Vec<Triple<T>> {
+    pub(super) fn velocities(&self) -> Vec<Triple<T>> {
         self.velocity.iter().map(|exact| exact.sum).collect()
     }
 
-    fn set_velocities(&mut self, velocities: &[Triple<T>]) {
+    pub(super) fn set_positions(&mut self, positions: &[Triple<T>]) {
+        for (own, position) in self.position.iter_mut().zip(positions) {
+            if own.sum != *position {
+                *own = exactly(*position);
+            }
+        }
+    }
+
+    pub(super) fn set_velocities(&mut self, velocities: &[Triple<T>]) {
         for (own, velocity) in self.velocity.iter_mut().zip(velocities) {
             if own.sum != *velocity {
                 *own = exactly(*velocity);
@@ -130,7 +175,7 @@ impl<T: Real> ForcesSimulation<T> {
         let instant = Instant {
             law: &self.law,
             surfaces: &self.surfaces,
-            bounce_height: self.accuracy.bounce_height,
+            bounce_height: self.bounce_height(),
             position: &position,
             held: &self.held,
             trigger,
@@ -145,10 +190,18 @@ impl<T: Real> ForcesSimulation<T> {
             held,
             fresh,
             undetermined,
+            in_cluster,
         } = aftermath;
         let time = self.time.sum.to_f64();
         if undetermined {
-            self.undetermined_from.get_or_insert(time);
+            let touch = trigger.map(|(touch, _)| touch);
+            let touch = touch.or(impacts.first().map(|impact| impact.touch));
+            let bodies = touch.map_or([0, 0], Touch::bodies);
+            let here = Undetermined { time, bodies };
+            self.undetermined.get_or_insert(here);
+            if in_cluster {
+                self.unsettled.get_or_insert(here);
+            }
         }
         if let Some(log) = log {
             for impact in impacts {
@@ -163,7 +216,7 @@ impl<T: Real> ForcesSimulation<T> {
         self.fresh = fresh;
     }
 
-    fn collapse(&mut self, [body_a, body_b]: [usize; 2]) {
+    pub(super) fn collapse(&mut self, [body_a, body_b]: [usize; 2]) {
         self.outcome = Some(Outcome::Collapsed {
             time: self.time.sum.to_f64(),
             body_a,
@@ -176,36 +229,72 @@ impl<T: Real> ForcesSimulation<T> {
         let Ok(factor) = self.close_held() else {
             return;
         };
-        let (position, velocity) = (self.positions(), self.velocities());
-        let mut series;
-        let mut end;
-        let mut tries = 0;
-        loop {
-            let start = (position.as_slice(), velocity.as_slice());
-            let scale = (self.accuracy.order, self.tau);
-            series = Series::expand(&self.law, start, &self.held, &factor, scale);
-            self.count();
-            tries += 1;
-            end = span(&series, &self.law, self.accuracy.tolerance);
+        if self.after_event && self.plan_short(&factor) {
+            return;
+        }
+        let order = self.accuracy.order;
+        for _ in 0..TRIES_MAX {
+            let mut series = self.series();
+            self.extend(&mut series, &factor, order);
+            let end = span(&series, &self.law, self.accuracy.tolerance);
             if !series.is_finite() || end.is_nan() {
                 // Too long a scale overflows; too short a one never does.
                 self.tau *= 2.0_f64.powi(-40);
-            } else if end.is_finite() && !(1e-6..1e6).contains(&end) && end > 0.0 && tries < 8 {
+            } else if end.is_finite() && end > 0.0 && !SCALES.contains(&end) {
                 self.tau = power_of_two(self.tau * end);
             } else {
-                break;
-            }
-            if tries > 16 {
-                let bodies = self.closest();
-                return self.collapse(bodies);
+                // Nothing changes at all: any step will do.
+                let end = if end.is_finite() { end } else { 1e3 };
+                return self.settle(series, end);
             }
         }
-        // Nothing changes at all: any step will do.
-        let end = if end.is_finite() { end } else { 1e3 };
-        if self
-            .watchdog
-            .is_vanishing::<T>(self.time.sum.to_f64(), end * series.tau)
-        {
+        let bodies = self.closest();
+        self.collapse(bodies);
+    }
+
+    /// Bounces that follow each other closely need few orders: tries with these, and whether
+    /// the next event came within what they reach.
+    fn plan_short(&mut self, factor: &Cholesky<T>) -> bool {
+        let mut series = self.series();
+        self.extend(&mut series, factor, SHORT_ORDER.min(self.accuracy.order));
+        let end = span(&series, &self.law, self.accuracy.tolerance);
+        if !series.is_finite() || !end.is_finite() {
+            return false;
+        }
+        let looked_at = &mut self.work.pair_tests;
+        let event = first_event(&series, &self.surfaces, end, &self.fresh, looked_at);
+        let Some(Upcoming { at, touch, cause }) = event else {
+            return false;
+        };
+        self.work.steps += 1;
+        self.step = Some(Step {
+            series,
+            end: at,
+            event: Some((touch, cause)),
+        });
+        true
+    }
+
+    fn series(&self) -> Series<T> {
+        let start = (self.positions(), self.velocities());
+        let scale = (self.accuracy.order, self.tau);
+        Series::at(&self.law, start, &self.held, scale)
+    }
+
+    /// Extends a series and counts the forces evaluated.
+    fn extend(&mut self, series: &mut Series<T>, factor: &Cholesky<T>, order: usize) {
+        let law = &self.law;
+        let gravity = law.gravity.iter().any(|g| g.to_f64() != 0.0);
+        let per_body = usize::from(law.drag.is_some()) + usize::from(gravity);
+        let forces = law.links.len() + per_body * law.inverse_mass.len();
+        self.work.force_evaluations += (forces * (order - series.order())) as u64;
+        series.extend(law, factor, order);
+    }
+
+    /// Takes a series whose step may last until `end`, or until the first event.
+    fn settle(&mut self, series: Series<T>, end: f64) {
+        let time = self.time.sum.to_f64();
+        if self.watchdog.is_vanishing::<T>(time, end * series.tau) {
             let bodies = self.closest();
             return self.collapse(bodies);
         }
@@ -218,60 +307,6 @@ impl<T: Real> ForcesSimulation<T> {
             None => (T::from_f64(end), None),
         };
         self.step = Some(Step { series, end, event });
-    }
-
-    fn count(&mut self) {
-        let law = &self.law;
-        let gravity = law.gravity.iter().any(|g| g.to_f64() != 0.0);
-        let per_body = usize::from(law.drag.is_some()) + usize::from(gravity);
-        let forces = law.links.len() + per_body * law.inverse_mass.len();
-        self.work.force_evaluations += (forces * self.accuracy.order) as u64;
-    }
-
-    /// Takes what rounding opened or moved in held contacts out of positions and velocities,
-    /// one Newton step over the masses, and factors their matrix.
-    fn close_held(&mut self) -> std::result::Result<Cholesky<T>, ()> {
-        if self.held.is_empty() {
-            return Ok(Cholesky::empty());
-        }
-        let mut position = self.positions();
-        let mut velocity = self.velocities();
-        let arms: Vec<_> = self
-            .held
-            .iter()
-            .map(|touch| arms(*touch, &position))
-            .collect();
-        let inverse_mass = &self.law.inverse_mass;
-        let entry = |i: usize, j: usize| contact_matrix(inverse_mass, &arms[i], &arms[j]);
-        let factor = match Cholesky::of(arms.len(), entry) {
-            Ok(factor) => factor,
-            Err(row) => {
-                self.collapse(self.held[row].bodies());
-                return Err(());
-            }
-        };
-        let mut open: Vec<T> = self
-            .held
-            .iter()
-            .map(|touch| {
-                let gap = self.surfaces.gap(*touch, &position);
-                -gap.times(self.surfaces.reach(*touch))
-            })
-            .collect();
-        let mut moving: Vec<T> = arms.iter().map(|arms| -arms.rate(&velocity)).collect();
-        factor.solve(&mut open);
-        factor.solve(&mut moving);
-        for (arms, (open, moving)) in arms.iter().zip(open.into_iter().zip(moving)) {
-            arms.push(open, inverse_mass, &mut position);
-            arms.push(moving, inverse_mass, &mut velocity);
-        }
-        for (own, position) in self.position.iter_mut().zip(position) {
-            if own.sum != position {
-                *own = exactly(position);
-            }
-        }
-        self.set_velocities(&velocity);
-        Ok(factor)
     }
 
     /// The pair of linked bodies with the least distance.
@@ -301,6 +336,7 @@ impl<T: Real> ForcesSimulation<T> {
                 }
             }
         }
+        self.after_event = step.event.is_some();
         let progress = (self.time.sum - before).to_f64();
         if let Some(event) = step.event {
             self.resolve(Some(event), log);
@@ -416,7 +452,8 @@ impl<T: Real> Simulation for ForcesSimulation<T> {
         self.fresh.clear();
         self.step = None;
         self.outcome = None;
-        self.undetermined_from = None;
+        self.undetermined = None;
+        self.unsettled = None;
         self.watchdog.restart(time.to_f64());
     }
 
