@@ -1,5 +1,6 @@
 //! Two or more recordings of one scene: conserved quantities, divergence, events in order.
 
+mod cluster;
 mod divergence;
 mod events;
 mod horizon;
@@ -7,6 +8,7 @@ mod metrics;
 mod sizes;
 mod verdict;
 
+pub use cluster::{ClusterFacts, cluster_facts};
 pub use divergence::{Divergence, DivergenceSample};
 pub use events::{Disagreement, EventAgreement, compare_events};
 pub use horizon::horizon;

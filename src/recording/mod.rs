@@ -96,12 +96,12 @@ impl Recording {
     pub fn comparable_samples(&self, scene: &Scene) -> usize {
         let count = self.sample_count();
         let certain = self.digits.as_ref().map_or(count, |digits| {
-            let weak = |digits: &Digits| digits.positions < COMPARABLE_DIGITS;
+            let weak = |digits: &Digits| digits.position < COMPARABLE_DIGITS;
             digits.iter().position(weak).unwrap_or(count)
         });
         let determined = self.undetermined.as_ref().map_or(count, |from| {
             (0..count)
-                .find(|sample| scene.sample_time(*sample) >= from.time_s)
+                .find(|sample| scene.sample_time(*sample) >= from.time)
                 .unwrap_or(count)
         });
         certain.min(determined)
@@ -113,8 +113,8 @@ impl Recording {
         let comparable = self.comparable_samples(scene);
         let digits = self.digits.as_ref()?.iter().take(comparable).copied();
         digits.reduce(|fewest, digits| Digits {
-            positions: fewest.positions.min(digits.positions),
-            velocities: fewest.velocities.min(digits.velocities),
+            position: fewest.position.min(digits.position),
+            velocity: fewest.velocity.min(digits.velocity),
         })
     }
 

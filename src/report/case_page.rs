@@ -114,11 +114,15 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         .collect();
     let undetermined = summary.voices.iter().filter_map(|voice| {
         let from = voice.undetermined.as_ref()?;
-        let spread = with_unit(from.spread, summary.length_unit.symbol());
-        let time = engineering(from.time_s);
+        let apart = |spread| with_unit(spread, summary.length_unit.symbol());
+        let spread = from.spread.map_or_else(
+            || "elsewhere".to_owned(),
+            |spread| format!("up to {} apart", apart(spread)),
+        );
+        let time = engineering(from.time);
         let told = format!(
             "finds the scene undetermined by the model from {time} s on: simultaneous events in \
-             another order end up to {spread} apart, and no engine is called wrong for it."
+             another order end {spread}, and no engine is called wrong for it."
         );
         Some((voice.voice.clone(), told))
     });
@@ -232,7 +236,7 @@ fn voice_row(summary: &Summary, voice: &VoiceSummary, unit: &str) -> VoiceRow {
         energy,
         momentum,
         digits: voice.digits_min.map_or("–".into(), |digits| {
-            format!("{} / {}", digits.positions, digits.velocities)
+            format!("{} / {}", digits.position, digits.velocity)
         }),
         penetration: with_unit(drift.max_penetration, unit),
     }

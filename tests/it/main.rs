@@ -8,6 +8,7 @@ mod command_line;
 mod controls;
 mod departures;
 mod exact_flight;
+mod exact_forces;
 #[cfg(feature = "rapier")]
 mod geometry;
 mod hostile;

@@ -4,10 +4,11 @@ use super::law::State;
 use super::order::TieOrder;
 use super::simulation::{FlightSimulation, Simultaneous};
 use crate::engine::Simulation;
+use crate::engine::exact::Certified;
 use crate::engine::exact::real::Real;
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
-use crate::recording::{Recording, initial_states};
+use crate::recording::{Digits, Recording, Undetermined, initial_states};
 use crate::scene::Scene;
 
 /// Inputs are moved by this share to see how errors grow: thousands of roundings.
@@ -24,40 +25,6 @@ const DIGITS_MAX: f64 = 15.0;
 
 /// Answers that differ by less than this share of the scene's size are the same.
 const SAME: f64 = 1e-9;
-
-/// Digits that a sample vouches for, of positions and velocities alike those of the worst body.
-///
-/// Units: decimal digits relative to the diagonal of the box of all positions, and to the
-/// largest speed. Valid for: the rule's order of simultaneous events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Digits {
-    /// Of positions.
-    pub position: u8,
-    /// Of velocities.
-    pub velocity: u8,
-}
-
-/// From here on another order of simultaneous events gives another answer.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Undetermined {
-    /// Time of the events, s.
-    pub time: f64,
-    /// Bodies that have two events at once.
-    pub bodies: Vec<usize>,
-    /// Largest distance between two answers for one body at one sample, scene length unit.
-    pub spread: f64,
-}
-
-/// A recording with what it vouches for.
-#[derive(Debug, Clone)]
-pub struct Certified {
-    /// The wide run, rounded to doubles.
-    pub recording: Recording,
-    /// Shape: `[sample]`.
-    pub digits: Vec<Digits>,
-    /// Where the model has no single answer, if anywhere.
-    pub undetermined: Option<Undetermined>,
-}
 
 /// Runs a scene and vouches for digits.
 ///
@@ -283,7 +250,7 @@ fn undetermined(
     Ok(Some(Undetermined {
         time: culprit.time,
         bodies,
-        spread,
+        spread: Some(spread),
     }))
 }
 

@@ -20,6 +20,6 @@ mod simulation;
 mod turn;
 mod world;
 
-pub use certify::{Certified, Digits, Undetermined, certified};
+pub use certify::certified;
 pub use order::TieOrder;
 pub use simulation::{FlightSimulation, Simultaneous};

@@ -1,0 +1,60 @@
+//! Contacts that press: kept closed from step to step.
+
+use super::cholesky::Cholesky;
+use super::scalar::{Real, Triple};
+use super::series::contact_matrix;
+use super::simulation::ForcesSimulation;
+use super::touch::{Arms, Touch, arms};
+
+impl<T: Real> ForcesSimulation<T> {
+    /// Takes what rounding opened or moved in held contacts out of positions and velocities,
+    /// one Newton step over the masses, and factors their matrix.
+    ///
+    /// The matrix is that of the places after the correction: an acceleration off by the
+    /// correction's share would open the contacts a hundredfold within a long step.
+    pub(super) fn close_held(&mut self) -> std::result::Result<Cholesky<T>, ()> {
+        if self.held.is_empty() {
+            return Ok(Cholesky::empty());
+        }
+        let (mut position, mut velocity) = (self.positions(), self.velocities());
+        let inverse_mass = self.law.inverse_mass.clone();
+        let (places, factor) = self.held_matrix(&position)?;
+        let open = |touch: &Touch| {
+            let gap = self.surfaces.gap(*touch, &position);
+            -gap.times(self.surfaces.reach(*touch))
+        };
+        let mut open: Vec<T> = self.held.iter().map(open).collect();
+        factor.solve(&mut open);
+        for (arms, open) in places.iter().zip(open) {
+            arms.push(open, &inverse_mass, &mut position);
+        }
+        let (places, factor) = self.held_matrix(&position)?;
+        let mut moving: Vec<T> = places.iter().map(|arms| -arms.rate(&velocity)).collect();
+        factor.solve(&mut moving);
+        for (arms, moving) in places.iter().zip(moving) {
+            arms.push(moving, &inverse_mass, &mut velocity);
+        }
+        self.set_positions(&position);
+        self.set_velocities(&velocity);
+        Ok(factor)
+    }
+
+    /// Directions of the held contacts, and their matrix; the run ends where they depend on
+    /// each other.
+    #[allow(clippy::type_complexity, reason = "a pair for one caller")]
+    fn held_matrix(
+        &mut self,
+        position: &[Triple<T>],
+    ) -> std::result::Result<(Vec<Arms<T>>, Cholesky<T>), ()> {
+        let places: Vec<_> = self.held.iter().map(|held| arms(*held, position)).collect();
+        let inverse_mass = &self.law.inverse_mass;
+        let entry = |i: usize, j: usize| contact_matrix(inverse_mass, &places[i], &places[j]);
+        match Cholesky::of(places.len(), entry) {
+            Ok(factor) => Ok((places, factor)),
+            Err(row) => {
+                self.collapse(self.held[row].bodies());
+                Err(())
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The forces of a scene in the one shape that the Taylor recurrences ask for.
+
+use super::scalar::{Real, Triple};
+use crate::scene::Scene;
+
+/// A force along the line between two bodies, and a damper on their relative velocity.
+///
+/// Equation: on body a, `(offset + scale (d² + s²)^power) d + damping (v_b - v_a)` with d from
+/// a to b; the opposite on b. Attraction: `offset = 0`, `scale = G m_a m_b`, `power = -3/2`.
+/// Spring: `offset = k`, `scale = -k l0`, `power = -1/2`, s = 0.
+/// Source: lecture, `computeAttraction()`; "스프링과 댐퍼" (springs and dampers), "최종 모델".
+#[derive(Debug, Clone)]
+pub(super) struct Link<T> {
+    /// Indices of bodies a and b.
+    pub(super) ends: [usize; 2],
+    /// Power of the squared distance, a multiple of 1/2.
+    pub(super) power: f64,
+    pub(super) offset: T,
+    pub(super) scale: T,
+    pub(super) damping: Option<T>,
+    /// s².
+    pub(super) softening_squared: T,
+}
+
+/// All forces of a scene.
+#[derive(Debug, Clone)]
+pub(super) struct Law<T> {
+    /// 1/m. Shape: `[body]`.
+    pub(super) inverse_mass: Vec<T>,
+    pub(super) links: Vec<Link<T>>,
+    /// Drag coefficient k of `F = -k v`.
+    pub(super) drag: Option<T>,
+    /// Uniform acceleration.
+    pub(super) gravity: Triple<T>,
+}
+
+impl<T: Real> Law<T> {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let effects = &scene.effects;
+        let mass = |body: usize| T::from_f64(scene.bodies[body].mass);
+        let mut links = Vec::new();
+        if let Some(attraction) = effects.attraction {
+            let softening = T::from_f64(attraction.softening);
+            for a in 0..scene.bodies.len() {
+                links.extend((a + 1..scene.bodies.len()).map(|b| Link {
+                    ends: [a, b],
+                    power: -1.5,
+                    offset: T::zero(),
+                    scale: T::from_f64(attraction.constant) * mass(a) * mass(b),
+                    damping: None,
+                    softening_squared: softening * softening,
+                }));
+            }
+        }
+        for (spring, ends) in effects.springs.iter().zip(scene.spring_ends()) {
+            let stiffness = T::from_f64(spring.stiffness);
+            links.push(Link {
+                ends,
+                power: -0.5,
+                offset: stiffness,
+                scale: -(stiffness * T::from_f64(spring.rest_length)),
+                damping: (spring.damping != 0.0).then(|| T::from_f64(spring.damping)),
+                softening_squared: T::zero(),
+            });
+        }
+        let drag = effects.drag.filter(|drag| drag.coefficient != 0.0);
+        let gravity = effects.gravity.map_or([0.0; 3], |g| g.acceleration);
+        Self {
+            inverse_mass: (0..scene.bodies.len())
+                .map(|body| T::from_f64(1.0) / mass(body))
+                .collect(),
+            links,
+            drag: drag.map(|drag| T::from_f64(drag.coefficient)),
+            gravity: gravity.map(T::from_f64),
+        }
+    }
+}

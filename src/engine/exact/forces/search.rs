@@ -1,0 +1,168 @@
+//! The first event within a step, on the step's own polynomials.
+
+use super::bernstein::{first_fall, polish};
+use super::scalar::{Real, Triple, dot, minus, size};
+use super::series::Series;
+use super::touch::{Surfaces, Touch};
+
+/// What ends a step early.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// Two surfaces meet with strict approach.
+    Approach,
+    /// The force of a held contact falls through zero.
+    Release,
+}
+
+/// The first event within a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Upcoming<T> {
+    /// Time since the start of the step, in units of the series' tau.
+    pub(super) at: T,
+    pub(super) touch: Touch,
+    pub(super) cause: Cause,
+}
+
+/// A gap that is closed at the step's start though nothing presses: its first coefficients are
+/// zero up to rounding and are left out, so that the root at the start is not met again.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fresh {
+    pub(super) touch: Touch,
+    /// 1: it opens with a speed; 2: with an acceleration; 3: with a jerk, after a release.
+    pub(super) skip: usize,
+}
+
+/// The first event on `0 <= u <= span`; counts the surfaces looked at.
+pub(super) fn first_event<T: Real>(
+    series: &Series<T>,
+    surfaces: &Surfaces<T>,
+    span: f64,
+    fresh: &[Fresh],
+    looked_at: &mut u64,
+) -> Option<Upcoming<T>> {
+    let powers = powers(span, series.order());
+    let travel = travel(series, &powers);
+    let mut first: Option<Upcoming<T>> = None;
+    let mut offer = |at: Option<T>, touch: Touch, cause: Cause| {
+        if let Some(at) = at
+            && first.is_none_or(|first| at < first.at)
+        {
+            first = Some(Upcoming { at, touch, cause });
+        }
+    };
+    for touch in surfaces.all() {
+        *looked_at += 1;
+        if out_of_reach(series, surfaces, touch, &travel)
+            || series.held.iter().any(|held| held.touch == touch)
+        {
+            continue;
+        }
+        let mut gap = gap_series(series, surfaces, touch);
+        let own = fresh.iter().find(|fresh| fresh.touch == touch);
+        let mut skip = own.map_or(0, |own| own.skip);
+        if skip == 0 && gap[0] <= T::zero() {
+            skip = 1;
+        }
+        // Still closing although closed: at once. A contact let go by the complementarity
+        // problem (skip 2 and 3) opens, up to rounding.
+        if skip == 1 && gap[1] < T::zero() {
+            offer(Some(T::zero()), touch, Cause::Approach);
+            continue;
+        }
+        gap.drain(..skip);
+        offer(fall_within(&gap, span, &powers), touch, Cause::Approach);
+    }
+    for held in &series.held {
+        let at = if held.force[0] <= T::zero() {
+            Some(T::zero())
+        } else {
+            fall_within(&held.force, span, &powers)
+        };
+        offer(at, held.touch, Cause::Release);
+    }
+    first
+}
+
+fn powers(span: f64, order: usize) -> Vec<f64> {
+    let next = |power: &f64| Some(power * span);
+    std::iter::successors(Some(1.0), next)
+        .take(order + 1)
+        .collect()
+}
+
+/// A bound on how far each body goes within the step.
+fn travel<T: Real>(series: &Series<T>, powers: &[f64]) -> Vec<f64> {
+    let mut travel = vec![0.0; series.position[0].len()];
+    for (coefficients, power) in series.position.iter().zip(powers).skip(1) {
+        for (travel, coefficient) in travel.iter_mut().zip(coefficients) {
+            *travel += size(coefficient) * power;
+        }
+    }
+    travel
+}
+
+/// Whether two surfaces cannot meet within the step; doubles will do, with a margin.
+fn out_of_reach<T: Real>(
+    series: &Series<T>,
+    surfaces: &Surfaces<T>,
+    touch: Touch,
+    travel: &[f64],
+) -> bool {
+    let position = &series.position[0];
+    match touch {
+        Touch::Pair { a, b } => {
+            let d = size(&minus(&position[b], &position[a]));
+            d * (1.0 - 1e-9) - surfaces.reach(touch) > (travel[a] + travel[b]) * (1.0 + 1e-9)
+        }
+        Touch::Wall { body, wall } => {
+            let (axis, side) = wall.axis_and_side();
+            let gap =
+                surfaces.half(wall) - surfaces.radii[body] - position[body][axis].to_f64() * side;
+            gap - 1e-9 * surfaces.half(wall) > travel[body] * (1.0 + 1e-9)
+        }
+    }
+}
+
+/// The gap's polynomial in u; of a pair, of `d . d - (r_a + r_b)²`.
+fn gap_series<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch) -> Vec<T> {
+    match touch {
+        Touch::Pair { a, b } => {
+            let d: Vec<Triple<T>> = series
+                .position
+                .iter()
+                .map(|x| minus(&x[b], &x[a]))
+                .collect();
+            let mut gap: Vec<T> = (0..d.len())
+                .map(|k| {
+                    let products = d[..=k].iter().zip(d[..=k].iter().rev());
+                    products.fold(T::zero(), |sum, (one, other)| sum + dot(one, other))
+                })
+                .collect();
+            let reach = T::from_f64(surfaces.radii[a]) + T::from_f64(surfaces.radii[b]);
+            gap[0] = gap[0] - reach * reach;
+            gap
+        }
+        Touch::Wall { body, wall } => {
+            let (axis, side) = wall.axis_and_side();
+            let mut gap: Vec<T> = series
+                .position
+                .iter()
+                .map(|x| x[body][axis].times(-side))
+                .collect();
+            gap[0] = surfaces.gap(touch, &series.position[0]);
+            gap
+        }
+    }
+}
+
+/// Where a polynomial in u falls through zero on `0 <= u <= span`.
+fn fall_within<T: Real>(polynomial: &[T], span: f64, powers: &[f64]) -> Option<T> {
+    let scaled: Vec<T> = polynomial
+        .iter()
+        .zip(powers)
+        .map(|(c, power)| c.times(*power))
+        .collect();
+    let doubles: Vec<f64> = scaled.iter().map(|c| c.to_f64()).collect();
+    let bracket = first_fall(&doubles)?;
+    Some(polish(&scaled, bracket).times(span))
+}

@@ -1,0 +1,476 @@
+//! The simulation: steps, the events that end them early, samples in between.
+
+use super::accuracy::{Accuracy, UNDETERMINED_BOUNCE_HEIGHT};
+use super::cholesky::Cholesky;
+use super::impacts::{Aftermath, Instant, closed_below};
+use super::law::Law;
+use super::refuse::check;
+use super::scalar::{Real, Triple, size};
+use super::search::{Cause, Fresh, Upcoming, first_event};
+use super::series::Series;
+use super::span::span;
+use super::touch::{Surfaces, Touch};
+use super::watchdog::Watchdog;
+use crate::engine::Simulation;
+use crate::error::Result;
+use crate::physics::BodyState;
+use crate::recording::{Event, EventLog, Outcome, Work, initial_states};
+use crate::scene::Scene;
+
+/// Order that is tried after an event, before the full one.
+const SHORT_ORDER: usize = 8;
+
+/// Steps between these multiples of the scale of time keep every coefficient a number.
+const SCALES: std::ops::Range<f64> = 1e-6..1e6;
+
+/// Scales of time that are tried.
+const TRIES_MAX: u32 = 16;
+
+/// Event-driven motion of a scene with attraction or springs.
+///
+/// Valid for: attraction, springs, drag, uniform gravity, contact and cushions in any
+/// combination; rest only without forces.
+#[derive(Debug, Clone)]
+pub struct ForcesSimulation<T: Real> {
+    pub(super) law: Law<T>,
+    pub(super) surfaces: Surfaces<T>,
+    accuracy: Accuracy,
+    sample_every: f64,
+    sample: usize,
+    shown: Vec<BodyState>,
+    /// Where the present step starts.
+    time: Exact<T>,
+    position: Vec<Exact<Triple<T>>>,
+    velocity: Vec<Exact<Triple<T>>>,
+    /// Contacts that press.
+    pub(super) held: Vec<Touch>,
+    fresh: Vec<Fresh>,
+    step: Option<Step<T>>,
+    tau: f64,
+    /// Whether the last step ended with an event.
+    after_event: bool,
+    watchdog: Watchdog,
+    outcome: Option<Outcome>,
+    undetermined: Option<Undetermined>,
+    unsettled: Option<Undetermined>,
+    work: Work,
+}
+
+/// An instant at which another order of simultaneous impacts would have given another answer:
+/// from there on the model itself has no single one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undetermined {
+    /// Time, s.
+    pub time: f64,
+    /// The bodies of the impact that set it off, the same one twice at a wall.
+    pub bodies: [usize; 2],
+}
+
+/// A sum with what rounding took from it.
+#[derive(Debug, Clone, Copy)]
+struct Exact<V> {
+    sum: V,
+    carry: V,
+}
+
+/// A step whose series is known.
+#[derive(Debug, Clone)]
+struct Step<T> {
+    series: Series<T>,
+    /// Where it ends, in units of the series' tau.
+    end: T,
+    event: Option<(Touch, Cause)>,
+}
+
+impl<T: Real> ForcesSimulation<T> {
+    /// Puts a scene at its start.
+    ///
+    /// # Errors
+    /// [`Error::EngineCannot`](crate::error::Error::EngineCannot) for rest together with
+    /// forces, and for bodies that overlap at the start; what is wrong with the scene.
+    pub fn new(scene: &Scene, accuracy: Accuracy) -> Result<Self> {
+        check(scene)?;
+        let mut simulation = Self {
+            law: Law::of(scene),
+            surfaces: Surfaces::of(scene),
+            accuracy,
+            sample_every: scene.sample_every,
+            sample: 0,
+            shown: Vec::new(),
+            time: Exact {
+                sum: T::zero(),
+                carry: T::zero(),
+            },
+            position: Vec::new(),
+            velocity: Vec::new(),
+            held: Vec::new(),
+            fresh: Vec::new(),
+            step: None,
+            tau: power_of_two(scene.sample_every),
+            after_event: false,
+            watchdog: Watchdog::new(scene.duration),
+            outcome: None,
+            undetermined: None,
+            unsettled: None,
+            work: Work::default(),
+        };
+        simulation.set_state(0, &initial_states(scene));
+        Ok(simulation)
+    }
+
+    /// Where the model ceased to have a single answer, if it did.
+    #[must_use]
+    pub fn undetermined(&self) -> Option<Undetermined> {
+        self.undetermined
+    }
+
+    /// Where an impact on a cluster of pressing contacts first had no single answer: from there
+    /// on the cluster cannot be certified, and bounces in it are ended sooner.
+    #[must_use]
+    pub fn unsettled(&self) -> Option<Undetermined> {
+        self.unsettled
+    }
+
+    /// Contacts that press at present.
+    #[must_use]
+    pub fn pressing_contacts(&self) -> usize {
+        self.held.len()
+    }
+
+    fn bounce_height(&self) -> f64 {
+        match self.unsettled {
+            Some(_) => UNDETERMINED_BOUNCE_HEIGHT.max(self.accuracy.bounce_height),
+            None => self.accuracy.bounce_height,
+        }
+    }
+
+    pub(super) fn positions(&self) -> Vec<Triple<T>> {
+        self.position.iter().map(|exact| exact.sum).collect()
+    }
+
+    pub(super) fn velocities(&self) -> Vec<Triple<T>> {
+        self.velocity.iter().map(|exact| exact.sum).collect()
+    }
+
+    pub(super) fn set_positions(&mut self, positions: &[Triple<T>]) {
+        for (own, position) in self.position.iter_mut().zip(positions) {
+            if own.sum != *position {
+                *own = exactly(*position);
+            }
+        }
+    }
+
+    pub(super) fn set_velocities(&mut self, velocities: &[Triple<T>]) {
+        for (own, velocity) in self.velocity.iter_mut().zip(velocities) {
+            if own.sum != *velocity {
+                *own = exactly(*velocity);
+            }
+        }
+    }
+
+    /// The impacts of this instant, and which contacts press from here on.
+    fn resolve(&mut self, trigger: Option<(Touch, Cause)>, log: Option<&mut EventLog>) {
+        let position = self.positions();
+        let mut velocity = self.velocities();
+        let instant = Instant {
+            law: &self.law,
+            surfaces: &self.surfaces,
+            bounce_height: self.bounce_height(),
+            position: &position,
+            held: &self.held,
+            trigger,
+        };
+        let aftermath = match instant.resolve(&mut velocity) {
+            Ok(aftermath) => aftermath,
+            Err(touch) => return self.collapse(touch.bodies()),
+        };
+        self.set_velocities(&velocity);
+        let Aftermath {
+            impacts,
+            held,
+            fresh,
+            undetermined,
+            in_cluster,
+        } = aftermath;
+        let time = self.time.sum.to_f64();
+        if undetermined {
+            let touch = trigger.map(|(touch, _)| touch);
+            let touch = touch.or(impacts.first().map(|impact| impact.touch));
+            let bodies = touch.map_or([0, 0], Touch::bodies);
+            let here = Undetermined { time, bodies };
+            self.undetermined.get_or_insert(here);
+            if in_cluster {
+                self.unsettled.get_or_insert(here);
+            }
+        }
+        if let Some(log) = log {
+            for impact in impacts {
+                log.push(Event {
+                    time,
+                    kind: impact.touch.event(),
+                    impulse: impact.impulse,
+                });
+            }
+        }
+        self.held = held;
+        self.fresh = fresh;
+    }
+
+    pub(super) fn collapse(&mut self, [body_a, body_b]: [usize; 2]) {
+        self.outcome = Some(Outcome::Collapsed {
+            time: self.time.sum.to_f64(),
+            a: body_a,
+            b: (body_b != body_a).then_some(body_b),
+        });
+    }
+
+    /// Expands the motion from here and finds where the step ends.
+    fn plan(&mut self) {
+        let Ok(factor) = self.close_held() else {
+            return;
+        };
+        if self.after_event && self.plan_short(&factor) {
+            return;
+        }
+        let order = self.accuracy.order;
+        for _ in 0..TRIES_MAX {
+            let mut series = self.series();
+            self.extend(&mut series, &factor, order);
+            let end = span(&series, &self.law, self.accuracy.tolerance);
+            if !series.is_finite() || end.is_nan() {
+                // Too long a scale overflows; too short a one never does.
+                self.tau *= 2.0_f64.powi(-40);
+            } else if end.is_finite() && end > 0.0 && !SCALES.contains(&end) {
+                self.tau = power_of_two(self.tau * end);
+            } else {
+                // Nothing changes at all: any step will do.
+                let end = if end.is_finite() { end } else { 1e3 };
+                return self.settle(series, end);
+            }
+        }
+        let bodies = self.closest();
+        self.collapse(bodies);
+    }
+
+    /// Bounces that follow each other closely need few orders: tries with these, and whether
+    /// the next event came within what they reach.
+    fn plan_short(&mut self, factor: &Cholesky<T>) -> bool {
+        let mut series = self.series();
+        self.extend(&mut series, factor, SHORT_ORDER.min(self.accuracy.order));
+        let end = span(&series, &self.law, self.accuracy.tolerance);
+        if !series.is_finite() || !end.is_finite() {
+            return false;
+        }
+        let looked_at = &mut self.work.pair_tests;
+        let event = first_event(&series, &self.surfaces, end, &self.fresh, looked_at);
+        let Some(Upcoming { at, touch, cause }) = event else {
+            return false;
+        };
+        self.work.steps += 1;
+        self.step = Some(Step {
+            series,
+            end: at,
+            event: Some((touch, cause)),
+        });
+        true
+    }
+
+    fn series(&self) -> Series<T> {
+        let start = (self.positions(), self.velocities());
+        let scale = (self.accuracy.order, self.tau);
+        Series::at(&self.law, start, &self.held, scale)
+    }
+
+    /// Extends a series and counts the forces evaluated.
+    fn extend(&mut self, series: &mut Series<T>, factor: &Cholesky<T>, order: usize) {
+        let law = &self.law;
+        let gravity = law.gravity.iter().any(|g| g.to_f64() != 0.0);
+        let per_body = usize::from(law.drag.is_some()) + usize::from(gravity);
+        let forces = law.links.len() + per_body * law.inverse_mass.len();
+        self.work.force_evaluations += (forces * (order - series.order())) as u64;
+        series.extend(law, factor, order);
+    }
+
+    /// Takes a series whose step may last until `end`, or until the first event.
+    fn settle(&mut self, series: Series<T>, end: f64) {
+        let time = self.time.sum.to_f64();
+        if self.watchdog.is_vanishing::<T>(time, end * series.tau) {
+            let bodies = self.closest();
+            return self.collapse(bodies);
+        }
+        self.tau = power_of_two(end * series.tau);
+        self.work.steps += 1;
+        let looked_at = &mut self.work.pair_tests;
+        let event = first_event(&series, &self.surfaces, end, &self.fresh, looked_at);
+        let (end, event) = match event {
+            Some(Upcoming { at, touch, cause }) => (at, Some((touch, cause))),
+            None => (T::from_f64(end), None),
+        };
+        self.step = Some(Step { series, end, event });
+    }
+
+    /// The pair of linked bodies with the least distance.
+    fn closest(&self) -> [usize; 2] {
+        let distance = |ends: [usize; 2]| {
+            let [a, b] = ends.map(|end| self.position[end].sum);
+            size(&super::scalar::minus(&a, &b))
+        };
+        let ends = self.law.links.iter().map(|link| link.ends);
+        let closest = ends.min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+        closest.unwrap_or([0, 0])
+    }
+
+    /// Goes to the end of the step, and through the event there.
+    fn cross(&mut self, step: &Step<T>, log: Option<&mut EventLog>) {
+        let before = self.time.sum;
+        let elapsed = step.end.times(step.series.tau);
+        T::accumulate(&mut self.time.sum, &mut self.time.carry, elapsed);
+        let moved = [
+            (&mut self.position, &step.series.position),
+            (&mut self.velocity, &step.series.velocity),
+        ];
+        for (own, series) in moved {
+            for (own, change) in own.iter_mut().zip(Series::change(series, step.end)) {
+                for (axis, change) in change.into_iter().enumerate() {
+                    T::accumulate(&mut own.sum[axis], &mut own.carry[axis], change);
+                }
+            }
+        }
+        self.after_event = step.event.is_some();
+        let progress = (self.time.sum - before).to_f64();
+        if let Some(event) = step.event {
+            self.resolve(Some(event), log);
+        } else {
+            self.forget_open();
+        }
+        let bodies = step
+            .event
+            .map_or_else(|| self.closest(), |(touch, _)| touch.bodies());
+        if self.outcome.is_none() && self.watchdog.runs_away(self.time.sum.to_f64(), progress) {
+            self.collapse(bodies);
+        }
+    }
+
+    /// A gap that has opened needs no care any more.
+    fn forget_open(&mut self) {
+        if self.fresh.is_empty() {
+            return;
+        }
+        let position = self.positions();
+        let surfaces = &self.surfaces;
+        self.fresh.retain(|fresh| {
+            let far = fresh.touch.bodies().map(|body| size(&position[body]));
+            let gap = surfaces.gap(fresh.touch, &position).to_f64();
+            gap <= closed_below::<T>(far[0].max(far[1]) + surfaces.reach(fresh.touch))
+        });
+    }
+
+    fn show(&mut self, step: Option<(&Step<T>, T)>) {
+        let mut shown = [self.positions(), self.velocities()];
+        if let Some((step, u)) = step {
+            let changes = [&step.series.position, &step.series.velocity];
+            for (shown, series) in shown.iter_mut().zip(changes) {
+                for (own, change) in shown.iter_mut().zip(Series::change(series, u)) {
+                    for axis in 0..3 {
+                        own[axis] = own[axis] + change[axis];
+                    }
+                }
+            }
+        }
+        let [position, velocity] = shown;
+        let vector = |triple: Triple<T>| triple.map(T::to_f64).into();
+        let states = position.into_iter().zip(velocity);
+        self.shown = states
+            .map(|(x, v)| BodyState {
+                position: vector(x),
+                velocity: vector(v),
+            })
+            .collect();
+    }
+
+    /// Steps on until the step that holds that time, all events up to it behind it.
+    fn reach(&mut self, target: f64, mut log: Option<&mut EventLog>) {
+        if self.step.is_none() && self.outcome.is_none() {
+            self.resolve(None, log.as_deref_mut());
+        }
+        while self.outcome.is_none() {
+            let Some(step) = self.step.take() else {
+                self.plan();
+                continue;
+            };
+            let left = T::from_f64(target) - self.time.sum - self.time.carry;
+            let beyond = (step.end.times(step.series.tau) - left).to_f64();
+            // An event at the sample's instant, up to the rounding of its time, belongs to it.
+            let at_once = 16.0 * T::EPSILON * target.abs();
+            let passes = if step.event.is_some() {
+                beyond <= at_once
+            } else {
+                beyond < 0.0
+            };
+            if passes {
+                self.cross(&step, log.as_deref_mut());
+            } else {
+                self.show(Some((&step, left.times(1.0 / step.series.tau))));
+                self.step = Some(step);
+                return;
+            }
+        }
+    }
+}
+
+impl<T: Real> Simulation for ForcesSimulation<T> {
+    #[allow(clippy::cast_precision_loss, reason = "samples stay far below 2^53")]
+    fn advance_to(&mut self, sample: usize, mut log: Option<&mut EventLog>) -> Option<Outcome> {
+        if sample > self.sample && self.outcome.is_none() {
+            self.sample = sample;
+            self.reach(sample as f64 * self.sample_every, log.take());
+        }
+        self.outcome
+    }
+
+    fn state_into(&self, into: &mut [BodyState]) {
+        for (into, shown) in into.iter_mut().zip(&self.shown) {
+            *into = *shown;
+        }
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "samples stay far below 2^53")]
+    fn set_state(&mut self, sample: usize, states: &[BodyState]) {
+        let wide = |vector: &crate::physics::Vector3| {
+            exactly([vector.x, vector.y, vector.z].map(T::from_f64))
+        };
+        self.sample = sample;
+        self.shown = states.to_vec();
+        let time = T::from_f64(sample as f64 * self.sample_every);
+        self.time = Exact {
+            sum: time,
+            carry: T::zero(),
+        };
+        self.position = states.iter().map(|state| wide(&state.position)).collect();
+        self.velocity = states.iter().map(|state| wide(&state.velocity)).collect();
+        self.held.clear();
+        self.fresh.clear();
+        self.step = None;
+        self.outcome = None;
+        self.undetermined = None;
+        self.unsettled = None;
+        self.watchdog.restart(time.to_f64());
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+fn exactly<T: Real>(sum: Triple<T>) -> Exact<Triple<T>> {
+    Exact {
+        sum,
+        carry: [T::zero(); 3],
+    }
+}
+
+/// The power of two nearest in size, so that scaling by it is exact.
+fn power_of_two(value: f64) -> f64 {
+    let exponent = value.log2().round();
+    exponent.clamp(-1000.0, 1000.0).exp2()
+}

@@ -1,0 +1,462 @@
+//! The `exact` engine on scenes with attraction or springs, against truth.
+
+use carom::case::Library;
+use carom::compare::{Drift, Sizes, cluster_facts, metrics};
+use carom::engine::Simulation;
+use carom::engine::exact::forces::{Accuracy, ForcesSimulation, Real, Wide, certified, fast};
+use carom::recording::{Outcome, Recording, initial_states};
+use carom::scene::{Attraction, Contact, Cushions, Effects, Gravity, Rest, Scene, Spring};
+
+use crate::scenes::{body, scene};
+
+/// A recording by the integrator in that arithmetic.
+fn computed<T: Real>(scene: &Scene, accuracy: Accuracy) -> Recording {
+    let mut simulation = ForcesSimulation::<T>::new(scene, accuracy).unwrap();
+    let mut recording = Recording::at_start("exact", scene);
+    let mut states = initial_states(scene);
+    for sample in 1..=scene.sample_count() {
+        let halt = simulation.advance_to(sample, Some(&mut recording.events));
+        if let Some(outcome) = halt {
+            recording.outcome = outcome;
+            break;
+        }
+        simulation.state_into(&mut states);
+        recording.push(&states);
+        recording.events.end_interval();
+    }
+    recording.work = simulation.work();
+    recording
+}
+
+/// Largest errors: positions over the diagonal of the box, velocities over the largest speed,
+/// event times over the duration.
+#[derive(Debug)]
+struct Errors {
+    position: f64,
+    velocity: f64,
+    event: f64,
+}
+
+fn errors(scene: &Scene, truth: &Recording, found: &Recording) -> Errors {
+    assert_eq!(
+        found.sample_count(),
+        truth.sample_count(),
+        "{:?}",
+        found.outcome
+    );
+    let size = size_of(truth);
+    let speeds = truth.samples().flatten().map(|state| state.velocity.norm());
+    let fastest = speeds.fold(0.0, f64::max);
+    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
+    for (own, other) in found.samples().flatten().zip(truth.samples().flatten()) {
+        position = position.max((own.position - other.position).norm() / size);
+        velocity = velocity.max((own.velocity - other.velocity).norm() / fastest);
+    }
+    let kinds = |recording: &Recording| -> Vec<_> {
+        recording
+            .events
+            .events()
+            .iter()
+            .map(|event| event.kind)
+            .collect()
+    };
+    assert_eq!(kinds(found), kinds(truth));
+    let events = found.events.events().iter().zip(truth.events.events());
+    let event = events
+        .map(|(own, other)| (own.time - other.time).abs() / scene.duration)
+        .fold(0.0, f64::max);
+    Errors {
+        position,
+        velocity,
+        event,
+    }
+}
+
+const CASES: [&str; 9] = [
+    "falling-pair",
+    "kepler-circle",
+    "kepler-e06",
+    "spring-chain",
+    "spring-critical",
+    "spring-over",
+    "spring-under",
+    "spring-under-line",
+    "spring-under-simple",
+];
+
+/// The bound is the one asked for; doubles reach 1e-13 and less, wide numbers the rounding of
+/// the output.
+#[test]
+fn agrees_with_truth() {
+    for name in CASES {
+        let case = Library::Embedded.case(name).unwrap();
+        let (scene, truth) = (&case.scene, &case.truth.unwrap());
+        for (arithmetic, recording) in [
+            ("f64", computed::<f64>(scene, Accuracy::FAST)),
+            ("wide", computed::<Wide>(scene, Accuracy::WIDE)),
+        ] {
+            let errors = errors(scene, truth, &recording);
+            println!("{name} {arithmetic} {errors:?} {:?}", recording.work);
+            let worst = errors.position.max(errors.velocity).max(errors.event);
+            assert!(worst <= 1e-11, "{name} {arithmetic}: {errors:?}");
+        }
+    }
+}
+
+/// The scenes of `tests/forces`, each at an edge: nearly parabolic orbits, mass ratio 1e15,
+/// three bodies, stiff and over-damped springs; truth by `make_truth.py` beside them.
+const EDGES: [&str; 9] = [
+    "figure-eight",
+    "kepler-e09-100",
+    "kepler-e099",
+    "kepler-e099-peri",
+    "kepler-mass",
+    "over-1e4",
+    "over-1e6",
+    "stiff-1e4",
+    "stiff-1e6",
+];
+
+fn edges() -> Library {
+    Library::Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/forces").into())
+}
+
+#[test]
+fn agrees_with_truth_at_the_edges() {
+    for name in EDGES {
+        let case = edges().case(name).unwrap();
+        let (scene, truth) = (&case.scene, &case.truth.unwrap());
+        for (arithmetic, recording, bound) in [
+            ("f64", computed::<f64>(scene, Accuracy::FAST), 1e-8),
+            ("wide", computed::<Wide>(scene, Accuracy::WIDE), 1e-11),
+        ] {
+            let errors = errors(scene, truth, &recording);
+            println!("{name} {arithmetic} {errors:?} {:?}", recording.work);
+            let worst = errors.position.max(errors.velocity).max(errors.event);
+            assert!(worst <= bound, "{name} {arithmetic}: {errors:?}");
+        }
+    }
+}
+
+/// What is claimed must be true: the error against truth stays below the claim at every
+/// sample, and the claim is not idle.
+#[test]
+fn certified_digits_are_honest_against_truth() {
+    let cases = CASES.iter().map(|name| Library::Embedded.case(name));
+    let edges = EDGES.iter().map(|name| edges().case(name));
+    for case in cases.chain(edges) {
+        let case = case.unwrap();
+        let (scene, truth) = (&case.scene, case.truth.unwrap());
+        let certified = certified(scene).unwrap();
+        let recording = &certified.recording;
+        assert_eq!(recording.sample_count(), truth.sample_count());
+        let (mut low, mut high) = (truth.sample(0)[0].position, truth.sample(0)[0].position);
+        let mut fastest = 0.0_f64;
+        let both = recording.samples().zip(truth.samples());
+        for ((own, other), digits) in both.zip(&certified.digits) {
+            for state in other {
+                (low, high) = (low.inf(&state.position), high.sup(&state.position));
+                fastest = fastest.max(state.velocity.norm());
+            }
+            let size = (high - low).norm();
+            for (own, other) in own.iter().zip(other) {
+                let position = (own.position - other.position).norm() / size;
+                let velocity = (own.velocity - other.velocity).norm();
+                let claimed = |digits: u8| 10.0_f64.powi(-i32::from(digits));
+                assert!(
+                    position <= claimed(digits.position),
+                    "{}: {position:e}",
+                    scene.name
+                );
+                assert!(
+                    velocity <= claimed(digits.velocity) * fastest,
+                    "{}",
+                    scene.name
+                );
+            }
+        }
+        let last = certified.digits.last().unwrap();
+        println!("{} {last:?}", scene.name);
+        assert!(
+            last.position >= 13 && last.velocity >= 13,
+            "{}: {last:?}",
+            scene.name
+        );
+    }
+}
+
+fn attraction(constant: f64) -> Option<Attraction> {
+    Some(Attraction {
+        constant,
+        softening: 0.0,
+    })
+}
+
+fn contact(restitution: f64) -> Option<Contact> {
+    Some(Contact { restitution })
+}
+
+/// Every pair turns about its centre of mass for ever once it has collapsed: distance, energy
+/// and angular momentum stay to rounding from then on.
+#[test]
+fn a_collapsed_pair_stays_in_contact() {
+    let bodies = vec![
+        body("a", 2.0, 0.4, [-1.1, 0.3, -0.7], [0.0, 0.3, 0.1]),
+        body("b", 3.0, 0.5, [0.9, -0.4, 1.2], [0.1, -0.2, 0.0]),
+    ];
+    let effects = Effects {
+        attraction: attraction(5.5),
+        contact: contact(0.5),
+        ..Effects::default()
+    };
+    let scene = scene(8.0, 0.0625, bodies, effects);
+    let certified = certified(&scene).unwrap();
+    let recording = &certified.recording;
+    assert_eq!(recording.outcome, Outcome::Finished);
+    let metrics = metrics(&scene, recording);
+    let settled = &metrics[40..];
+    let first = settled[0];
+    for (at, states) in settled.iter().zip(recording.samples().skip(40)) {
+        let distance = (states[0].position - states[1].position).norm();
+        assert!((distance - 0.9).abs() < 1e-15, "{distance}");
+        let energy = (at.total_energy() - first.total_energy()) / first.energy_scale();
+        assert!(energy.abs() < 1e-14, "{energy:e}");
+        let turn = (at.angular_momentum - metrics[0].angular_momentum).norm();
+        assert!(
+            turn < 1e-14 * metrics[0].angular_momentum.norm() * 10.0,
+            "{turn:e}"
+        );
+    }
+    let last = certified.digits.last().unwrap();
+    assert!(last.position >= 13, "{last:?}");
+}
+
+/// A ball stands on the floor, another hangs above it on a stretched spring: pressed at first,
+/// the lower one is lifted when the spring pulls with its weight. With no damper nothing
+/// dissipates until it lands.
+#[test]
+fn a_ball_leaves_the_floor_when_the_spring_pulls() {
+    let bodies = vec![
+        body("low", 1.0, 0.5, [0.0, -4.5, 0.0], [0.0; 3]),
+        body("high", 1.0, 0.5, [0.0, -3.5, 0.0], [0.0; 3]),
+    ];
+    let (k, g) = (100.0, 10.0);
+    let effects = Effects {
+        cushions: Some(Cushions {
+            half_width: 9.0,
+            half_length: 9.0,
+            half_height: Some(5.0),
+            restitution: 0.5,
+        }),
+        gravity: Some(Gravity {
+            acceleration: [0.0, -g, 0.0],
+        }),
+        springs: vec![Spring {
+            between: ["low".into(), "high".into()],
+            stiffness: k,
+            rest_length: 2.0,
+            damping: 0.0,
+        }],
+        ..Effects::default()
+    };
+    let scene = scene(0.5, 0.0078125, bodies, effects);
+    // About the balance of the upper one, 0.1 below the rest length, amplitude 0.9 and rate 10:
+    // the stretch is -0.1 - 0.9 cos(10 t), and the pull outweighs the ball at a stretch of 0.1.
+    let lift = (-0.2_f64 / 0.9).acos() / 10.0;
+    for recording in [fast(&scene).unwrap(), certified(&scene).unwrap().recording] {
+        assert_eq!(recording.outcome, Outcome::Finished);
+        for (sample, states) in recording.samples().enumerate() {
+            let time = scene.sample_time(sample);
+            if time < lift {
+                let high = -4.5 + 2.0 - 0.1 - 0.9 * (10.0 * time).cos();
+                assert!((states[1].position.y - high).abs() < 1e-14);
+                assert_eq!(states[0].position.y, -4.5);
+            } else {
+                assert!(states[0].position.y > -4.5, "at {time}");
+            }
+        }
+        let metrics = metrics(&scene, &recording);
+        let drift = Drift::of(&metrics, &Sizes::of(&recording, &metrics)).energy_drift_max;
+        assert!(drift < 1e-14, "{drift:e}");
+        assert!(recording.events.events().is_empty());
+    }
+}
+
+/// The lecture's cluster: certified until an impact on a touching cluster lets the model
+/// itself lose its single answer; `fast` goes on until the clump turns as one rigid body.
+#[test]
+fn the_lectures_cluster_collapses() {
+    let scene = Library::Embedded.case("cluster-8").unwrap().scene;
+    let certified = certified(&scene).unwrap();
+    let Outcome::Collapsed { time, .. } = certified.recording.outcome else {
+        panic!("{:?}", certified.recording.outcome);
+    };
+    println!(
+        "{time} {:?} {:?}",
+        certified.digits.last(),
+        certified.recording.work
+    );
+    assert!((1.7..1.9).contains(&time), "{time}");
+    let digits = certified.digits.last().unwrap();
+    assert!(digits.position >= 10, "{digits:?}");
+    let whole = fast(&scene).unwrap();
+    assert_eq!(whole.outcome, Outcome::Finished);
+    let size = size_of(&whole);
+    for (own, other) in whole.samples().zip(certified.recording.samples()) {
+        for (own, other) in own.iter().zip(other) {
+            assert!((own.position - other.position).norm() < 1e-6 * size);
+        }
+    }
+    let at = metrics(&scene, &whole);
+    let drift = Drift::of(&at, &Sizes::of(&whole, &at));
+    assert!(drift.max_penetration < 1e-12, "{drift:?}");
+    assert!(drift.momentum_drift_max < 1e-12, "{drift:?}");
+    let facts = cluster_facts(&scene, &whole);
+    assert_eq!(
+        (facts.largest_clump, facts.bound_bodies),
+        (8, 8),
+        "{facts:?}"
+    );
+    let last = metrics(&scene, &whole).into_iter().rev().take(8);
+    let kinetic: Vec<f64> = last.map(|at| at.total_energy()).collect();
+    assert!((kinetic[0] / kinetic[7] - 1.0).abs() < 1e-12, "{kinetic:?}");
+}
+
+/// Half an ulp on every input moves a chaotic scene; the claim of the run itself concerns
+/// the inputs as they are, so a third computation must stay within it.
+#[test]
+fn claims_hold_against_a_third_computation() {
+    let third = Accuracy {
+        order: 31,
+        tolerance: 1e-26,
+        bounce_height: 1e-26,
+    };
+    let mut counted = 0;
+    for seed in 0..2 {
+        let scene = cloud(seed);
+        let certified = certified(&scene).unwrap();
+        let shorter = Scene {
+            duration: scene.sample_time(certified.recording.sample_count() - 1),
+            ..scene.clone()
+        };
+        let other = computed::<Wide>(&shorter, third);
+        let size = size_of(&certified.recording);
+        let both = certified.recording.samples().zip(other.samples());
+        for ((one, other), digits) in both.zip(&certified.digits) {
+            for (one, other) in one.iter().zip(other) {
+                let error = (one.position - other.position).norm() / size;
+                let claimed = 10.0_f64.powi(-i32::from(digits.position));
+                assert!(error <= claimed, "seed {seed}: {error:e} > {claimed:e}");
+                counted += 1;
+            }
+        }
+    }
+    assert!(counted > 300, "{counted}");
+}
+
+/// Six spheres that fall together and collide, inelastically.
+fn cloud(seed: u32) -> Scene {
+    let bodies = (0..6_u32).map(|i| {
+        let phase = |k: u32| f64::from((i * 7919 + seed * 104_729 + k * 1299) % 1000) / 1000.0;
+        let turn = std::f64::consts::TAU * f64::from(i) / 6.0;
+        let (radius, out) = (0.3 + 0.2 * phase(1), 2.0 + 0.5 * phase(2));
+        let position = [out * turn.cos(), 0.6 * phase(3), out * turn.sin()];
+        body(
+            &format!("p{i}"),
+            1.0 + 3.0 * phase(4),
+            radius,
+            position,
+            [0.2 * phase(5), 0.1 * phase(6), -0.2 * phase(7)],
+        )
+    });
+    let effects = Effects {
+        attraction: attraction(2.0),
+        contact: contact(0.4),
+        ..Effects::default()
+    };
+    scene(2.0, 0.03125, bodies.collect(), effects)
+}
+
+#[test]
+fn what_has_no_exact_meaning_is_refused_by_name() {
+    let two = |distance: f64| {
+        vec![
+            body("left", 1.0, 0.5, [0.0; 3], [0.0; 3]),
+            body("right", 1.0, 0.5, [distance, 0.0, 0.0], [0.0; 3]),
+        ]
+    };
+    let effects = Effects {
+        attraction: attraction(1.0),
+        contact: contact(0.5),
+        ..Effects::default()
+    };
+    let message = |scene: &Scene| fast(scene).unwrap_err().to_string();
+    let deep = message(&scene(1.0, 0.5, two(0.75), effects.clone()));
+    assert!(deep.contains("`left` and `right`, 2.5e-1 deep"), "{deep}");
+    let resting = Effects {
+        rest: Some(Rest { speed: 0.1 }),
+        ..effects
+    };
+    let rest = message(&scene(1.0, 0.5, two(2.0), resting));
+    assert!(rest.contains("rest together with attraction"), "{rest}");
+}
+
+/// Points that fall into each other, bodies at one place, bounces without loss: an end with
+/// time and names, or a finish, but no panic and no endless loop.
+#[test]
+fn singular_scenes_end_with_time_and_bodies() {
+    let points = |x: [f64; 3]| {
+        vec![
+            body("a", 1.0, 1e-3, [-0.5, 0.0, 0.0], [0.0; 3]),
+            body("b", 1.0, 1e-3, x, [0.0; 3]),
+        ]
+    };
+    let effects = Effects {
+        attraction: attraction(1.0),
+        ..Effects::default()
+    };
+    let falling = fast(&scene(4.0, 0.5, points([0.5, 0.0, 0.0]), effects.clone())).unwrap();
+    let Outcome::Collapsed { time, a, b } = falling.outcome else {
+        panic!("{:?}", falling.outcome);
+    };
+    // Free fall of two unit masses from distance 1: pi/4 with G = 1.
+    assert!((time - std::f64::consts::FRAC_PI_4).abs() < 1e-9, "{time}");
+    assert_eq!((a, b), (0, Some(1)));
+    let together = fast(&scene(4.0, 0.5, points([-0.5, 0.0, 0.0]), effects)).unwrap();
+    assert!(matches!(together.outcome, Outcome::Collapsed { .. }));
+    let elastic = Effects {
+        attraction: attraction(1.0),
+        contact: contact(1.0),
+        ..Effects::default()
+    };
+    let bouncing = fast(&scene(4.0, 0.5, points([0.5, 0.0, 0.0]), elastic)).unwrap();
+    assert_eq!(bouncing.outcome, Outcome::Finished);
+    assert_eq!(bouncing.events.counts().contacts, 3);
+}
+
+/// Three in a row hit at once from both sides: the model's order decides, another order gives
+/// another answer, and the recording says so and goes on.
+#[test]
+fn simultaneous_impacts_are_undetermined_and_go_on() {
+    let ball = |name: &str, x: f64, v: f64| body(name, 1.0, 0.5, [x, 0.0, 0.0], [v, 0.0, 0.0]);
+    let bodies = vec![
+        ball("a", -2.0, 1.0),
+        ball("b", 0.0, 0.0),
+        ball("c", 2.0, -1.0),
+    ];
+    let effects = Effects {
+        attraction: attraction(1e-3),
+        contact: contact(0.5),
+        ..Effects::default()
+    };
+    let scene = scene(1.5, 0.0625, bodies, effects);
+    let certified = certified(&scene).unwrap();
+    assert_eq!(certified.recording.outcome, Outcome::Finished);
+    let undetermined = certified.undetermined.expect("two impacts at once");
+    assert!((0.9..1.0).contains(&undetermined.time), "{undetermined:?}");
+}
+
+/// Diagonal of the box of all positions of a recording.
+fn size_of(recording: &Recording) -> f64 {
+    Sizes::of(recording, &[]).length
+}
