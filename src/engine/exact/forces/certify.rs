@@ -24,7 +24,7 @@ const SAFETY: f64 = 10.0;
 /// Computes a scene with forces and certifies its digits.
 ///
 /// Two computations by different orders, tolerances and thresholds of contact, in
-/// double-double while [their work](WIDE_WORK_MAX) lasts and in doubles after it, are compared
+/// double-double while their work, bounded, lasts and in doubles after it, are compared
 /// sample by sample. Equation: digits = `-log10(10 (difference + rounding)/scale)`, the
 /// difference being the largest so far, so that a chance agreement claims nothing.
 ///

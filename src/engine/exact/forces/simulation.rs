@@ -325,6 +325,12 @@ impl<T: Real> ForcesSimulation<T> {
         let before = self.time.sum;
         let elapsed = step.end.times(step.series.tau);
         T::accumulate(&mut self.time.sum, &mut self.time.carry, elapsed);
+        for (position, velocity) in self.position.iter_mut().zip(&self.velocity) {
+            // The series starts from the velocity's sum alone.
+            for (axis, carry) in velocity.carry.into_iter().enumerate() {
+                position.carry[axis] = position.carry[axis] + carry * elapsed;
+            }
+        }
         let moved = [
             (&mut self.position, &step.series.position),
             (&mut self.velocity, &step.series.velocity),
