@@ -129,14 +129,17 @@ impl Axis {
         }
     }
 
-    /// A linear axis whose ends are the smallest and the largest finite value.
+    /// A linear axis whose ends are the smallest and the largest finite value; for a
+    /// single value an axis that starts (or, below 0, ends) at 0.
     pub(super) fn tight(values: &[f64], most: u32) -> Self {
         let [low, high] = extent(values).unwrap_or([0.0, 1.0]);
         if high - low > SMALLEST_SPAN && high - low > 1e-12 * low.abs().max(high.abs()) {
             return Self::between(low, high, most);
         }
-        let reach = low.abs().max(1.0) / 2.0;
-        Self::between(low - reach, high + reach, most)
+        if high.abs() <= 1e-9 {
+            return Self::between(0.0, 1.0, most);
+        }
+        Self::between((2.0 * low).min(0.0), (2.0 * high).max(0.0), most)
     }
 
     /// A logarithmic axis over whole decades that holds all positive finite values, and
@@ -147,10 +150,11 @@ impl Axis {
         let (low, high, note) = match extent(&positive) {
             Some([low, high]) => {
                 let (low, high) = (low.log10().floor(), high.log10().ceil());
+                let note = has_zero.then(|| "grey: exactly 0".to_owned());
                 if low < high {
-                    (low, high, None)
+                    (low, high, note)
                 } else {
-                    (low - 1.0, high + 1.0, None)
+                    (low - 1.0, high + 1.0, note)
                 }
             }
             None if has_zero => (-3.0, 0.0, Some("0 throughout".to_owned())),
@@ -329,6 +333,17 @@ mod tests {
     }
 
     #[test]
+    fn a_single_time_has_an_axis_that_starts_at_zero() {
+        assert_eq!(Axis::tight(&[0.0], 5).share(0.0), Some(0.0));
+        assert_eq!(Axis::tight(&[0.0], 5).share(1.0), Some(1.0));
+        assert_eq!(texts(&Axis::tight(&[0.2], 5))[0], "0.0");
+        assert_eq!(Axis::tight(&[0.2], 5).share(0.2), Some(0.5));
+        assert_eq!(Axis::tight(&[-2.0], 5).share(0.0), Some(1.0));
+        let late = Axis::tight(&[1e9, 1e9 + 1e-6], 5);
+        assert_eq!(late.share(0.0), Some(0.0));
+    }
+
+    #[test]
     fn values_that_cannot_be_drawn_have_no_place() {
         let axis = Axis::holding(&[0.0, 1.0], STRICT, 5);
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -345,6 +360,8 @@ mod tests {
         let axis = Axis::decades(&[0.0, 1e-16, 1e3], 12);
         assert_eq!(texts(&axis)[0], "0");
         assert!(axis.share(0.0) < axis.share(1e-16));
+        assert_eq!(axis.note.as_deref(), Some("grey: exactly 0"));
+        assert_eq!(Axis::decades(&[1e-16, 1e3], 12).note, None);
         let zeros = Axis::decades(&[0.0, 0.0], 12);
         assert_eq!(zeros.note.as_deref(), Some("0 throughout"));
         assert!(zeros.share(0.0).is_some());

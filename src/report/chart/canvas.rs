@@ -10,8 +10,8 @@ use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle};
 
-use super::polyline::{Frame, Point, circle, dashed};
-use super::text::{FAMILY, SIZE_PER_PX, register, wrapped};
+use super::polyline::{Frame, Point, circle, dashed, dotted};
+use super::text::{FAMILY, SIZE_PER_PX, drawable, register, wrapped};
 use super::theme::{CANVAS, INK, LineStyle, MARGIN, PAPER, Pen, QUIET, SIZE, SMALL_PX, TITLE_PX};
 use super::{ChartError, png};
 
@@ -74,7 +74,13 @@ impl Canvas<'_> {
     /// A line through the points; a single point becomes a dot.
     pub(super) fn line(&self, points: &[Point], pen: Pen) -> Result<(), ChartError> {
         if let [point] = points {
-            return self.disc(*point, pen.width, pen.color);
+            // Smaller from style to style, so that dots at the same place all show.
+            let share = match pen.style {
+                LineStyle::Solid => 1.0,
+                LineStyle::Dashed => 0.9,
+                LineStyle::Dotted => 0.4,
+            };
+            return self.disc(*point, pen.width * share, pen.color);
         }
         let pieces = match pen.style {
             LineStyle::Solid => vec![points.to_vec()],
@@ -100,11 +106,15 @@ impl Canvas<'_> {
         self.line(&points, pen)
     }
 
-    /// Dots along a line, each on whole pixels: equal dots compress well.
+    /// Dots along a line, each on whole pixels: equal dots compress well. A white halo
+    /// parts them from a line beneath, which otherwise would seem to change its colour.
     fn dots(&self, points: &[Point], pen: Pen) -> Result<(), ChartError> {
-        for dot in dashed(points, 0.0, pen.gap()) {
-            let [x, y] = dot[0];
-            self.disc([x.round(), y.round()], pen.width / 2.0, pen.color)?;
+        let dots = dotted(points, pen.lead(), pen.gap());
+        let radius = pen.width / 2.0;
+        for (radius, color) in [(radius + pen.halo(), PAPER), (radius, pen.color)] {
+            for [x, y] in &dots {
+                self.disc([x.round(), y.round()], radius, color)?;
+            }
         }
         Ok(())
     }
@@ -150,7 +160,11 @@ impl Canvas<'_> {
             .into_font()
             .color(&look.color)
             .pos(Pos::new(h_pos, VPos::Top));
-        let element = Text::new(text.to_owned(), place([at[0].round(), top]), style);
+        let element = Text::new(
+            drawable(text).into_owned(),
+            place([at[0].round(), top]),
+            style,
+        );
         Ok(self.area.draw(&element)?)
     }
 
@@ -217,6 +231,20 @@ mod tests {
         let image = decode(&bytes);
         let dark = (100..900).filter(|x| image.at(*x, 200)[0] < 128).count();
         assert!((300..700).contains(&dark), "{dark} of 800");
+    }
+
+    #[test]
+    fn every_text_is_drawn_in_letters_of_the_font() {
+        let draw = |text: &str| {
+            let look = Lettering {
+                px: 40.0,
+                color: INK,
+                align: Align::Left,
+            };
+            picture(|canvas| canvas.text(text, [100.0, 400.0], look)).unwrap()
+        };
+        assert_eq!(draw("당구공"), draw("danggugong"));
+        assert_ne!(draw("белый"), draw("belyi"));
     }
 
     #[test]

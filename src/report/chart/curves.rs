@@ -4,10 +4,11 @@ use super::ChartError;
 use super::axis::{Axis, Scale, Steadiness, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
-use super::polyline::{Frame, runs, thinned_columns};
+use super::polyline::{Frame, clipped, runs, thinned_columns};
 use super::text::{shortened, width};
 use super::theme::{
-    CANVAS, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET, SMALL_PX, color, mix,
+    CANVAS, DASHED_PX, DOT, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET,
+    SMALL_PX, color, mix,
 };
 use super::ticks::with_exponent;
 
@@ -134,14 +135,14 @@ struct Plot {
 /// The pen of a curve.
 fn pen(curve: &Curve) -> Pen {
     let width = match curve.line {
-        LineStyle::Solid => 6.0,
-        LineStyle::Dashed => 4.5,
-        LineStyle::Dotted => 6.5,
+        LineStyle::Solid => 8.0,
+        LineStyle::Dashed => DASHED_PX,
+        LineStyle::Dotted => DASHED_PX * DOT,
     };
     let full = color(curve.color);
     let (color, width) = match curve.weight {
         Weight::Main => (full, width),
-        Weight::Aside => (mix(full, PAPER, 0.2), width * 0.55),
+        Weight::Aside => (mix(full, PAPER, 0.2), width * 0.45),
     };
     Pen {
         color,
@@ -267,7 +268,9 @@ fn draw_panel(
                 Some([x, frame.y(plot.axis.share(point[1])?)])
             });
             for run in runs(points) {
-                canvas.line(&thinned_columns(&run), pen(curve))?;
+                for part in clipped(&thinned_columns(&run), frame) {
+                    canvas.line(&part, pen(curve))?;
+                }
             }
         }
     }

@@ -10,7 +10,7 @@ use super::theme::{INK, LABEL_PX, LineStyle, Pen, QUIET};
 /// Height of one row in pixels.
 const ROW: f64 = 40.0;
 /// Room for the sample of a line.
-const LINE_KEY: f64 = 88.0;
+const LINE_KEY: f64 = 90.0;
 /// Room for a disc or a ring.
 const DISC_KEY: f64 = 26.0;
 /// Between the key and its text.

@@ -10,6 +10,7 @@ mod curves;
 mod legend;
 mod paths;
 mod paths_figure;
+mod paths_look;
 mod png;
 mod polyline;
 mod text;

@@ -1,26 +1,16 @@
 //! The paths of the bodies in a plane, to scale.
 
-use plotters::style::RGBColor;
-
 use super::ChartError;
 use super::axis::{Axis, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
-use super::legend::{Entry, Key, Legend};
+use super::legend::Legend;
 use super::paths_figure::{PathBody, PathsFigure};
-use super::polyline::{Frame, Point, clipped, runs, thinned};
+use super::paths_look::{MOST_DASHED, end_ring, entries, pen, start_color, voice_count};
+use super::polyline::{Frame, Point, circle, clipped, runs, thinned};
 use super::text::shortened;
-use super::theme::{
-    CANVAS, COLOR_COUNT, CUSHION, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET,
-    SMALL_PX, color, mix,
-};
+use super::theme::{CANVAS, CUSHION, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, Pen, SMALL_PX};
 use super::window::{Window, window};
 
-/// More bodies than this are not told apart by colour; the colour tells the voice.
-const MOST_NAMED: usize = 12;
-/// More bodies than this are drawn with plain thin lines.
-const MOST_DASHED: usize = 200;
-/// How many of a crowd are named.
-const CROWD_NAMES: usize = 3;
 /// Room for the labels left of the plot.
 const GUTTER: f64 = 112.0;
 /// Room for labels and name below the plot.
@@ -178,9 +168,7 @@ impl Sheet {
         };
         let corners = [[-a, -b], [a, -b], [a, b], [-a, b], [-a, -b]];
         for run in runs(corners.map(|corner| self.place(corner))) {
-            for part in clipped(&run, &self.plot) {
-                canvas.line(&part, Pen::solid(CUSHION, 5.0))?;
-            }
+            self.draw_within(canvas, &run, Pen::solid(CUSHION, 5.0))?;
         }
         Ok(())
     }
@@ -210,123 +198,53 @@ impl Sheet {
                     if !run.iter().any(far) {
                         continue;
                     }
-                    for part in clipped(&run, &self.plot) {
-                        canvas.line(&part, pen)?;
-                    }
+                    self.draw_within(canvas, &run, pen)?;
                 }
             }
         }
         Ok(())
     }
 
+    /// The part of a line within the plot. Where it leaves, it ends half its width
+    /// before the edge, so that no ink crosses the frame.
+    fn draw_within(&self, canvas: &Canvas, run: &[Point], pen: Pen) -> Result<(), ChartError> {
+        let margin = match pen.style {
+            LineStyle::Solid | LineStyle::Dashed => 0.0,
+            LineStyle::Dotted => pen.halo(),
+        };
+        let within = self.plot.inset(pen.width / 2.0 + margin);
+        for part in clipped(run, &within) {
+            canvas.line(&part, pen)?;
+        }
+        Ok(())
+    }
+
     fn draw_ends(&self, canvas: &Canvas, figure: &PathsFigure) -> Result<(), ChartError> {
-        for voice in 0..voice_count(figure) {
+        let voices = voice_count(figure);
+        for voice in 0..voices {
             for (i, body) in figure.bodies.iter().enumerate() {
                 let track = body.tracks.get(voice).into_iter().flatten();
                 let end = track.rev().find_map(|point| self.place(*point));
                 let Some(end) = end.filter(|p| self.plot.contains(*p)) else {
                     continue;
                 };
-                let pen = pen(figure, i, voice);
-                let radius = self.radius(figure, body);
-                let width = (pen.width * 0.6).min(radius / 3.0);
-                // A pattern cannot be read on a small ring.
-                let style = if radius < 12.0 {
-                    LineStyle::Solid
-                } else {
-                    pen.style
-                };
-                let pen = Pen {
-                    width,
-                    style,
-                    ..pen
-                };
-                canvas.ring(end, radius - width / 2.0, pen)?;
+                let (radius, pen) = end_ring(
+                    self.radius(figure, body),
+                    pen(figure, i, voice),
+                    voices - 1 - voice,
+                );
+                self.draw_within(canvas, &circle(end, radius), pen)?;
             }
         }
         Ok(())
     }
 }
 
-fn voice_count(figure: &PathsFigure) -> usize {
-    figure
-        .bodies
-        .iter()
-        .map(|body| body.tracks.len())
-        .max()
-        .unwrap_or(0)
-}
-
-fn is_crowd(figure: &PathsFigure) -> bool {
-    figure.bodies.len() > MOST_NAMED
-}
-
-/// The colour of a start disc: pale, so that what lies on it can be seen.
-fn start_color(figure: &PathsFigure, body: usize) -> RGBColor {
-    if is_crowd(figure) {
-        mix(QUIET, PAPER, 0.7)
-    } else {
-        mix(color(body), PAPER, 0.65)
-    }
-}
-
-/// The pen of one body's track in one voice.
-fn pen(figure: &PathsFigure, body: usize, voice: usize) -> Pen {
-    match figure.bodies.len() {
-        0..=MOST_NAMED => Pen::of_voice(voice, color(body), 1.0),
-        // Too many to be told apart: the colour tells the voice.
-        13..=MOST_DASHED => Pen::of_voice(voice, color(voice), 0.65),
-        _ => Pen::solid(color(voice), if voice == 0 { 3.0 } else { 1.5 }),
-    }
-}
-
-/// The legend: bodies by colour, voices by line style, what the discs mean, and remarks.
-fn entries(figure: &PathsFigure, window: &Window) -> Vec<Vec<Entry>> {
-    let crowd = is_crowd(figure);
-    let bodies = if crowd {
-        let names: Vec<&str> = figure.bodies.iter().map(|b| b.name.as_str()).collect();
-        let rest = names.len() - CROWD_NAMES;
-        vec![
-            Entry::new(Key::Remark, names[..CROWD_NAMES].join(", ")),
-            Entry::new(Key::Remark, format!("… and {rest} more")),
-        ]
-    } else {
-        let entry = |(i, body): (usize, &PathBody)| Entry::new(Key::Disc(color(i)), &*body.name);
-        figure.bodies.iter().enumerate().map(entry).collect()
-    };
-    let voice_pen = |voice: usize| {
-        if crowd {
-            pen(figure, 0, voice)
-        } else {
-            Pen::of_voice(voice, QUIET, 1.0)
-        }
-    };
-    let voices = figure.voices.iter().enumerate();
-    let voices = voices.map(|(i, name)| Entry::new(Key::Line(voice_pen(i)), &**name));
-    let mut discs = vec![
-        Entry::new(Key::Disc(mix(QUIET, PAPER, 0.65)), "start"),
-        Entry::new(Key::Ring(Pen::solid(QUIET, 4.0)), "end"),
-    ];
-    if figure.bodies.is_empty() {
-        discs = vec![Entry::new(Key::Remark, "no bodies")];
-    }
-    if !crowd && figure.bodies.len() > COLOR_COUNT {
-        discs.push(Entry::new(Key::Remark, "colours repeat"));
-    }
-    if window.leaving > 0 {
-        let count = format!("{} of {}", window.leaving, figure.bodies.len());
-        discs.push(Entry::new(
-            Key::Remark,
-            format!("{count} leave the picture"),
-        ));
-    }
-    vec![bodies, voices.chain(discs).collect()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::paths_figure::{AxisLabel, View};
     use super::super::testing::decode;
+    use super::super::theme::TITLE_PX;
     use super::*;
 
     fn figure(bodies: Vec<PathBody>) -> PathsFigure {
@@ -386,14 +304,55 @@ mod tests {
     }
 
     #[test]
-    fn coincident_voices_both_show() {
-        let track = vec![[0.0, 0.0], [100.0, 30.0]];
-        let image = decode(&paths(&figure(vec![body("a", 1.0, track)])).unwrap());
-        for voice in 0..2 {
-            let pen = Pen::of_voice(voice, color(0), 1.0);
-            let wanted = [pen.color.0, pen.color.1, pen.color.2];
-            let count = image.pixels.iter().filter(|p| **p == wanted).count();
-            assert!(count > 800, "voice {voice}: {count}");
+    fn coincident_voices_all_show() {
+        for bodies in [1, 30] {
+            let track = vec![[0.0, 0.0], [100.0, 30.0]];
+            let mut body = body("a", 1.0, track.clone());
+            body.tracks.push(track);
+            let figure = figure(vec![body; bodies]);
+            let image = decode(&paths(&figure).unwrap());
+            // Ink of each voice on the path, between the discs at its ends.
+            for voice in 0..3 {
+                let ink = pen(&figure, 0, voice).color;
+                let rows = image.pixels.chunks(1440).skip(250);
+                let on_path = rows.flat_map(|row| &row[400..900]);
+                let wanted = [ink.0, ink.1, ink.2];
+                let count = on_path.filter(|pixel| **pixel == wanted).count();
+                assert!(count > 200, "{bodies} bodies, voice {voice}: {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_ink_of_a_path_leaves_the_frame() {
+        for far in [
+            [1e231, 1e230],
+            [1e5, -1e5],
+            [-1e231, 1.0],
+            [f64::MAX, f64::MIN],
+        ] {
+            let at = |i: u32| vec![[f64::from(i), 0.0], [f64::from(i), 20.0]];
+            let mut bodies: Vec<PathBody> = (0..9).map(|i| body("a", 0.3, at(i * 3))).collect();
+            let mut runaway = vec![[3.0, 7.0]; 9];
+            runaway[4] = far;
+            let mut far_body = body("far", 0.3, vec![[3.0, 7.0]]);
+            far_body.tracks[0] = runaway;
+            bodies.push(far_body);
+            let figure = figure(bodies);
+            let image = decode(&paths(&figure).unwrap());
+            let top = MARGIN + 1.3 * (TITLE_PX + SMALL_PX);
+            let sheet = Sheet::layout(&figure, window(&figure), top).unwrap();
+            assert_eq!(sheet.window.leaving, 1);
+            // Right of the plot and left of it there is no ink of any body.
+            let colored = |pixel: &[u8; 3]| pixel.iter().max() > pixel.iter().min();
+            let plot = sheet.plot;
+            for (i, pixel) in image.pixels.iter().enumerate() {
+                let pixels = u32::try_from(i).unwrap();
+                let (x, y) = (f64::from(pixels % 1440), f64::from(pixels / 1440));
+                let beside = x < plot.left - 3.0 || x > plot.right + 3.0 && x < plot.right + 40.0;
+                let outside = y > 300.0 && beside || y > plot.bottom + 60.0;
+                assert!(!(outside && colored(pixel)), "{far:?}: {x} {y} {pixel:?}");
+            }
         }
     }
 

@@ -3,6 +3,9 @@
 /// A place on the canvas in pixels, x to the right and y down.
 pub(super) type Point = [f64; 2];
 
+/// Clipping takes what is farther away to be here.
+const FARTHEST: f64 = 1e150;
+
 /// A rectangle on the canvas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
@@ -40,6 +43,18 @@ impl Frame {
     /// Whether the point lies within, edges included.
     pub(super) fn contains(&self, point: Point) -> bool {
         (self.left..=self.right).contains(&point[0]) && (self.top..=self.bottom).contains(&point[1])
+    }
+
+    /// The frame without a margin along its edges, as far as there is one.
+    pub(super) fn inset(&self, margin: f64) -> Self {
+        let across = margin.min(self.width() / 2.0);
+        let down = margin.min(self.height() / 2.0);
+        Self {
+            left: self.left + across,
+            top: self.top + down,
+            right: self.right - across,
+            bottom: self.bottom - down,
+        }
     }
 
     /// The outline, closed.
@@ -122,31 +137,34 @@ pub(super) fn clipped(run: &[Point], frame: &Frame) -> Vec<Vec<Point>> {
     parts
 }
 
-/// The part of one segment within the frame, after Liang and Barsky.
+/// The part of one segment within the frame, edges included: cut at one edge after the
+/// other, which stays exact to a fraction of a pixel however far away the ends are.
 fn clipped_segment(from: Point, to: Point, frame: &Frame) -> Option<[Point; 2]> {
-    let low = [frame.left, frame.top];
-    let high = [frame.right, frame.bottom];
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        let delta = to[axis] - from[axis];
-        if delta == 0.0 {
-            if from[axis] < low[axis] || from[axis] > high[axis] {
-                return None;
+    // Differences stay finite.
+    let near = |point: Point| point.map(|v| v.clamp(-FARTHEST, FARTHEST));
+    let mut ends = [near(from), near(to)];
+    let limits = [[frame.left, frame.right], [frame.top, frame.bottom]];
+    for (axis, [low, high]) in limits.into_iter().enumerate() {
+        for (edge, sign) in [(low, 1.0), (high, -1.0)] {
+            let out = ends.map(|end| (end[axis] - edge) * sign < 0.0);
+            let [a, b] = ends;
+            match out {
+                [true, true] => return None,
+                [true, false] => ends[0] = crossing(b, a, axis, edge),
+                [false, true] => ends[1] = crossing(a, b, axis, edge),
+                [false, false] => {}
             }
-            continue;
         }
-        let a = (low[axis] - from[axis]) / delta;
-        let b = (high[axis] - from[axis]) / delta;
-        enter = enter.max(a.min(b));
-        leave = leave.min(a.max(b));
     }
-    let at = |share: f64| {
-        [
-            from[0] + share * (to[0] - from[0]),
-            from[1] + share * (to[1] - from[1]),
-        ]
-    };
-    (enter <= leave).then(|| [at(enter), at(leave)])
+    Some(ends)
+}
+
+/// Where the way from `inside` to `outside` crosses the edge at `edge` along an axis.
+fn crossing(inside: Point, outside: Point, axis: usize, edge: f64) -> Point {
+    let share = (edge - inside[axis]) / (outside[axis] - inside[axis]);
+    let mut at = between(inside, outside, share);
+    at[axis] = edge;
+    at
 }
 
 /// The pieces of a line drawn with `on` pixels of ink and `off` pixels of gap in turn.
@@ -184,6 +202,31 @@ pub(super) fn dashed(run: &[Point], on: f64, off: f64) -> Vec<Vec<Point>> {
         pieces.push(piece);
     }
     pieces
+}
+
+/// Places along a line: the first after `lead` pixels, then one every `step`. A line
+/// shorter than `lead` has one, at its start.
+pub(super) fn dotted(run: &[Point], lead: f64, step: f64) -> Vec<Point> {
+    let mut dots: Vec<Point> = Vec::new();
+    let mut left = lead;
+    for pair in run.windows(2) {
+        let length = distance(pair[0], pair[1]);
+        while left <= length && left.is_finite() && step > 0.0 {
+            let share = if length > 0.0 { left / length } else { 0.0 };
+            dots.push(between(pair[0], pair[1], share));
+            left += step;
+        }
+        left -= length;
+    }
+    if dots.is_empty() {
+        dots.extend(run.first());
+    }
+    dots
+}
+
+/// The point at a share (0 to 1) of the way.
+fn between(from: Point, to: Point, share: f64) -> Point {
+    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
 }
 
 /// A circle as a closed line.
@@ -263,6 +306,52 @@ mod tests {
             clipped(&out_and_in, &UNIT),
             vec![vec![[5.0, 5.0], [10.0, 5.0]], vec![[10.0, 8.0], [5.0, 8.0]]]
         );
+    }
+
+    #[test]
+    fn nothing_clipped_leaves_the_frame_however_far_it_came_from() {
+        let far = [1e-9, 1.0, 1e3, 1e17, 1e151, 1e231, f64::MAX, f64::INFINITY];
+        let all: Vec<f64> = far.iter().flat_map(|v| [-v, *v, 3.7]).collect();
+        for (x, y) in all.iter().flat_map(|x| all.iter().map(move |y| (*x, *y))) {
+            for other in [[5.0, 5.0], [-7.0, 5.0], [-1e231, 4.0], [y, -x]] {
+                for run in [[[x, y], other], [other, [x, y]]] {
+                    for point in clipped(&run, &UNIT).concat() {
+                        assert!(UNIT.contains(point), "{run:?}: {point:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_to_far_away_keeps_its_direction() {
+        let far = [[2.0, 5.0], [1e231, 5.0]];
+        assert_eq!(clipped(&far, &UNIT), vec![vec![[2.0, 5.0], [10.0, 5.0]]]);
+        let back = [[1e100, -1e100], [2.0, 8.0]];
+        let part = &clipped(&back, &UNIT)[0];
+        assert!((part[0][0] - 10.0).abs() + part[0][1].abs() < 1e-9);
+        assert_eq!(part[1], [2.0, 8.0]);
+        let through = [[-1e231, 4.0], [1e231, 4.0]];
+        assert_eq!(
+            clipped(&through, &UNIT),
+            vec![vec![[0.0, 4.0], [10.0, 4.0]]]
+        );
+    }
+
+    #[test]
+    fn dots_stand_in_the_gaps_of_dashes() {
+        let run = [[0.0, 0.0], [5.0, 0.0], [5.0, 8.0]];
+        let pieces = dashed(&run, 3.0, 2.0);
+        let dots = dotted(&run, 4.0, 5.0);
+        assert_eq!(dots, [[4.0, 0.0], [5.0, 4.0]]);
+        for piece in pieces {
+            assert!(
+                piece
+                    .iter()
+                    .all(|p| dots.iter().all(|d| distance(*p, *d) >= 1.0))
+            );
+        }
+        assert_eq!(dotted(&run[..2], 9.0, 5.0), [[0.0, 0.0]]);
     }
 
     #[test]

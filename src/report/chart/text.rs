@@ -1,4 +1,8 @@
-//! Text that fits: measured, wrapped at words, shortened with an ellipsis.
+//! Text that fits: in letters that the font has, measured, wrapped at words, shortened
+//! with an ellipsis.
+
+use std::borrow::Cow;
+use std::sync::LazyLock;
 
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
@@ -10,6 +14,10 @@ pub(super) const FAMILY: &str = "DejaVu Sans";
 pub(super) const SIZE_PER_PX: f64 = 1.24;
 /// No text in a picture is longer; spares measuring what cannot fit.
 const LONGEST: usize = 300;
+
+/// The font, to be asked for letters.
+static FACE: LazyLock<Option<ttf_parser::Face>> =
+    LazyLock::new(|| ttf_parser::Face::parse(dejavu::sans::regular(), 0).ok());
 
 /// Makes the font known to plotters, which measures with it.
 pub(super) fn register() -> Result<(), ChartError> {
@@ -23,7 +31,9 @@ pub(super) fn width(text: &str, px: f64) -> Result<f64, ChartError> {
     const MEASURED_PX: f64 = 1000.0;
     let size = MEASURED_PX * SIZE_PER_PX;
     let font = FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal);
-    let (width, _) = font.box_size(text).map_err(|_| ChartError::Font)?;
+    let (width, _) = font
+        .box_size(&drawable(text))
+        .map_err(|_| ChartError::Font)?;
     Ok(f64::from(width) * px / MEASURED_PX)
 }
 
@@ -70,18 +80,40 @@ pub(super) fn wrapped(
     Ok(lines)
 }
 
+/// The text in letters that the font has: others are spelled in Latin ones (Korean,
+/// Chinese, emoji by their names), or are "?" where nobody knows how.
+pub(super) fn drawable(text: &str) -> Cow<'_, str> {
+    let has = |c: char| {
+        let known = |face: &ttf_parser::Face| face.glyph_index(c).is_some();
+        c.is_ascii() || FACE.as_ref().is_none_or(known)
+    };
+    if text.chars().all(has) {
+        return Cow::Borrowed(text);
+    }
+    let mut drawn = String::new();
+    for c in text.chars() {
+        if has(c) {
+            drawn.push(c);
+        } else {
+            drawn.push_str(deunicode::deunicode_char(c).unwrap_or("?"));
+        }
+    }
+    Cow::Owned(drawn)
+}
+
 /// The text without characters that SVG forbids or that have no width, and not endless.
 fn clean(text: &str) -> String {
     let allowed = |c: char| !c.is_control() && !matches!(c, '\u{FFFE}' | '\u{FFFF}');
-    let mut cleaned: String = text
+    let kept: String = text
         .chars()
         .take(LONGEST)
         .map(|c| if allowed(c) { c } else { ' ' })
         .collect();
+    let mut cleaned = drawable(&kept).trim().to_owned();
     if text.chars().nth(LONGEST).is_some() {
         cleaned.push('…');
     }
-    cleaned.trim().to_owned()
+    cleaned
 }
 
 #[cfg(test)]
@@ -121,6 +153,42 @@ mod tests {
         assert_eq!(two.len(), 2);
         assert!(two[1].ends_with('…'), "{two:?}");
         assert!(wrapped("", 20.0, 150.0, 2).unwrap().is_empty());
+    }
+
+    #[test]
+    fn letters_that_the_font_lacks_are_spelled_in_latin() {
+        let cases = [
+            ("당구공 1", "danggugong 1"),
+            ("cue é Ω μ ° − … 10⁻⁵", "cue é Ω μ ° − … 10⁻⁵"),
+            ("белый", "белый"),
+            ("\u{E000}\u{10FFFD}", "??"),
+        ];
+        for (text, wanted) in cases {
+            assert_eq!(drawable(text), wanted);
+        }
+        for text in [
+            "台球 赤",
+            "ビリヤード",
+            "🎱 ⚽🏳️‍🌈",
+            "한글",
+            "\u{1112}\u{1161}\u{11AB}",
+        ] {
+            let drawn = drawable(text);
+            let has = |c| FACE.as_ref().unwrap().glyph_index(c).is_some();
+            assert!(drawn.chars().all(has), "{text}: {drawn}");
+            assert!(drawn.trim().len() > 2, "{text}: {drawn}");
+            assert_eq!(drawable(&drawn), drawn);
+        }
+        assert!(!clean("台球").contains('?'));
+    }
+
+    #[test]
+    fn what_is_measured_and_kept_is_what_is_drawn() {
+        register().unwrap();
+        let (korean, latin) = (width("당구공", 20.0), width("danggugong", 20.0));
+        assert_eq!(korean.unwrap(), latin.unwrap());
+        let short = shortened(&"당구공 ".repeat(50), 20.0, 200.0).unwrap();
+        assert!(short.starts_with("danggugong da"), "{short}");
     }
 
     #[test]

@@ -71,6 +71,15 @@ pub(super) fn mix(color: RGBColor, target: RGBColor, share: f64) -> RGBColor {
     )
 }
 
+/// Width of a dashed line in pixels.
+pub(super) const DASHED_PX: f64 = 4.5;
+/// Length of a dash, without its round ends, in widths of the line.
+const DASH: f64 = 2.0;
+/// Length of the gap between two dashes, with their round ends, in widths of the line.
+const GAP: f64 = 2.8;
+/// A dot is this many times as wide as the dashed line whose gaps it fits.
+pub(super) const DOT: f64 = 1.5;
+
 /// How a line is broken, which is what tells the engines ("voices") apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineStyle {
@@ -115,7 +124,7 @@ impl Pen {
     pub(super) fn dash(&self) -> f64 {
         match self.style {
             LineStyle::Solid => f64::INFINITY,
-            LineStyle::Dashed => 3.7 * self.width,
+            LineStyle::Dashed => DASH * self.width,
             LineStyle::Dotted => 0.0,
         }
     }
@@ -124,20 +133,31 @@ impl Pen {
     pub(super) fn gap(&self) -> f64 {
         match self.style {
             LineStyle::Solid => 0.0,
-            LineStyle::Dashed => 3.3 * self.width,
-            LineStyle::Dotted => 2.4 * self.width,
+            LineStyle::Dashed => GAP * self.width,
+            LineStyle::Dotted => (DASH + GAP) * self.width / DOT,
         }
     }
 
+    /// How far from the start of a line its first dot is, in pixels: on a line that is
+    /// dashed too, the dots fall into the gaps.
+    pub(super) fn lead(&self) -> f64 {
+        (DASH + GAP / 2.0) * self.width / DOT
+    }
+
+    /// Width of the white rim around a dot in pixels.
+    pub(super) fn halo(&self) -> f64 {
+        0.18 * self.width
+    }
+
     /// The pen of a voice drawn in a colour it shares with other voices: the first is
-    /// wide and pale and lies beneath, the others are narrow and darker on top, so that
-    /// voices which coincide all stay visible. `share` scales the width.
+    /// wide and pale and lies beneath, the others are narrower and in the full colour on
+    /// top, so that voices which coincide all stay visible. `share` scales the width.
     pub(super) fn of_voice(voice: usize, color: RGBColor, share: f64) -> Self {
         let style = LineStyle::of_voice(voice);
         let (color, width) = match style {
-            LineStyle::Solid => (mix(color, PAPER, 0.5), 9.0),
-            LineStyle::Dashed => (color, 4.0),
-            LineStyle::Dotted => (mix(color, INK, 0.55), 6.0),
+            LineStyle::Solid => (mix(color, PAPER, 0.55), 11.0),
+            LineStyle::Dashed => (color, DASHED_PX),
+            LineStyle::Dotted => (color, DASHED_PX * DOT),
         };
         Self {
             color,
@@ -175,8 +195,38 @@ mod tests {
     fn first_voice_is_the_widest_and_palest() {
         let pens: Vec<Pen> = (0..3).map(|i| Pen::of_voice(i, color(0), 1.0)).collect();
         assert!(pens[0].width > pens[1].width);
-        assert!(pens[0].color.0 > pens[1].color.0 && pens[1].color.2 > pens[2].color.2);
+        assert!(pens[0].color.0 > pens[1].color.0);
         assert_eq!(pens[1].style, LineStyle::Dashed);
         assert_eq!(pens[2].style, LineStyle::Dotted);
+    }
+
+    #[test]
+    fn every_voice_keeps_the_hue_of_its_body() {
+        for i in 0..COLOR_COUNT {
+            let RGBColor(r, g, b) = color(i);
+            for voice in 0..3 {
+                let ink = Pen::of_voice(voice, color(i), 1.0).color;
+                // Differences of the channels make the hue: paler by at most 60 %.
+                for (own, ink) in [((r, g), (ink.0, ink.1)), ((g, b), (ink.1, ink.2))] {
+                    let own = f64::from(own.0) - f64::from(own.1);
+                    let ink = f64::from(ink.0) - f64::from(ink.1);
+                    let (most, least) = (own.abs() + 1.0, 0.4 * own.abs() - 1.0);
+                    assert!(
+                        (least..=most).contains(&(ink * own.signum())),
+                        "{i} {voice}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn dots_fit_into_the_gaps_of_dashes() {
+        let [dashed, dotted] = [1, 2].map(|voice| Pen::of_voice(voice, INK, 0.65));
+        let period = dashed.dash() + dashed.gap();
+        assert!((dotted.gap() - period).abs() < 1e-9);
+        let free = dashed.gap() - dashed.width;
+        assert!(dotted.width <= free, "{} in {free}", dotted.width);
+        assert!((dotted.lead() - dashed.dash() - dashed.gap() / 2.0).abs() < 1e-9);
     }
 }
