@@ -2,7 +2,14 @@
 
 use super::{Vector3, length};
 
-/// Equation: `m v² / 2`. Source: lecture, "운동 에너지의 보존" (conservation of kinetic energy).
+/// Kinetic energy of a body that does not turn.
+///
+/// Equation: `m v² / 2`.
+/// Units: kg times scene length unit squared per second squared; mass in kg, velocity in scene
+/// length units per second.
+/// Valid for: any velocity; components beyond about 1e154 overflow when squared.
+/// Source: lecture, "운동 에너지의 보존" (conservation of kinetic energy), "선형 운동 에너지"
+/// (linear kinetic energy).
 #[must_use]
 pub fn kinetic_energy(mass: f64, velocity: &Vector3) -> f64 {
     0.5 * mass * velocity.dot(velocity)
@@ -10,9 +17,13 @@ pub fn kinetic_energy(mass: f64, velocity: &Vector3) -> f64 {
 
 /// Potential energy of a pair that attracts, zero at infinite distance.
 ///
-/// Equation: `-G m_a m_b / (d² + s²)^(1/2)`; its gradient is the force of
-/// [`attraction`](super::attraction). Valid for: `d + s > 0`; at 0 it is taken as zero, as the
-/// force is.
+/// Equation: `-G m_a m_b / (d² + s²)^(1/2)`; minus its gradient is the force of
+/// [`attraction`](super::attraction).
+/// Units: kg times scene length unit squared per second squared; `constant` in length³/(kg s²),
+/// masses in kg, `softening` and `distance` in scene length units.
+/// Valid for: `d + s > 0`; at 0 it is taken as zero, as the force is.
+/// Source: the integral of the force of the lecture's "충돌" (collisions),
+/// `computeAttraction()`; the lecture itself has no potential energy.
 #[must_use]
 pub fn attraction_energy(constant: f64, softening: f64, masses: [f64; 2], distance: f64) -> f64 {
     let reach = (distance * distance + softening * softening).sqrt();
@@ -24,7 +35,13 @@ pub fn attraction_energy(constant: f64, softening: f64, masses: [f64; 2], distan
 
 /// Elastic energy of a spring between two positions.
 ///
-/// Equation: `k (l - l0)² / 2`.
+/// Equation: `k (l - l0)² / 2`, l the distance of the ends; minus its gradient is the elastic part
+/// of the force of [`spring_damper`](super::spring_damper).
+/// Units: kg times scene length unit squared per second squared; `stiffness` in kg/s²,
+/// `rest_length` and positions in scene length units.
+/// Valid for: any ends, coincident ones included; the damper stores nothing.
+/// Source: the integral of the force of the lecture's "스프링과 댐퍼" (springs and dampers),
+/// "최종 모델" (final model); the lecture itself has no potential energy.
 #[must_use]
 pub fn spring_energy(stiffness: f64, rest_length: f64, ends: [&Vector3; 2]) -> f64 {
     let stretch = length(&(ends[1] - ends[0])) - rest_length;
@@ -33,7 +50,12 @@ pub fn spring_energy(stiffness: f64, rest_length: f64, ends: [&Vector3; 2]) -> f
 
 /// Potential energy in uniform gravity, zero at the origin.
 ///
-/// Equation: `-m g . x`.
+/// Equation: `-m g . x`; minus its gradient is the weight `m g`.
+/// Units: kg times scene length unit squared per second squared; mass in kg, `acceleration` in
+/// scene length units per second squared, position in scene length units.
+/// Valid for: any position.
+/// Source: carom's own, as uniform gravity is: the slides' particle has a field for it and never
+/// uses it.
 #[must_use]
 pub fn gravity_energy(mass: f64, acceleration: &Vector3, position: &Vector3) -> f64 {
     -mass * acceleration.dot(position)

@@ -72,10 +72,25 @@ fn the_good_scene_is_good() {
     }
 }
 
+/// What to replace in the good scene, by what, the line to be named, and what must be said.
+type Slip = (&'static str, &'static str, usize, &'static str);
+
+fn assert_named_with_their_place(slips: &[Slip]) {
+    for (from, to, line, part) in slips {
+        let text = GOOD.replacen(from, to, 1);
+        assert_ne!(text, GOOD, "{from} is not in the scene");
+        let said = complaint(text.as_bytes(), &[]);
+        assert!(
+            said.contains(&format!("s.toml:{line}:")),
+            "{to}: line {line}, not: {said}"
+        );
+        assert!(said.contains(part), "{to}: `{part}` is missing in: {said}");
+    }
+}
+
 #[test]
-fn each_fault_of_a_scene_is_named_with_its_place() {
-    // What to replace, by what, the line to be named, and what must be said.
-    let table = [
+fn faults_of_the_scene_itself_are_named_with_their_place() {
+    assert_named_with_their_place(&[
         ("name = \"two\"", "name = \"Two/../x\"", 1, "a-z, 0-9"),
         ("name = \"two\"", "name = \"\"", 1, "a-z, 0-9"),
         ("duration = 1.0", "duration = 0.0", 2, "above 0"),
@@ -97,6 +112,12 @@ fn each_fault_of_a_scene_is_named_with_its_place() {
             "sample_every",
         ),
         ("sample_every = 0.25", "", 1, "missing field `sample_every`"),
+    ]);
+}
+
+#[test]
+fn faults_of_a_body_are_named_with_their_place() {
+    assert_named_with_their_place(&[
         ("mass = 1.0", "mass = 0", 6, "above 0"),
         ("mass = 1.0", "mass = -1.5", 6, "above 0"),
         ("mass = 1.0", "mass = 1e999", 6, ""),
@@ -118,6 +139,12 @@ fn each_fault_of_a_scene_is_named_with_its_place() {
         ("name = \"b\"", "name = \"a\"", 11, "name of bodies[0] too"),
         ("name = \"b\"", "name = \"  \"", 11, "give the body a name"),
         ("name = \"b\"", "name = \"b\\t\"", 11, "control characters"),
+    ]);
+}
+
+#[test]
+fn faults_of_an_effect_are_named_with_their_place() {
+    assert_named_with_their_place(&[
         ("restitution = 0.5", "restitution = 1.5", 17, "from 0 to 1"),
         ("restitution = 0.5", "restitution = -0.1", 17, "from 0 to 1"),
         (
@@ -152,17 +179,7 @@ fn each_fault_of_a_scene_is_named_with_its_place() {
             "0 or a number above",
         ),
         ("[effects.contact]", "[effects.contact", 16, ""),
-    ];
-    for (from, to, line, part) in table {
-        let text = GOOD.replacen(from, to, 1);
-        assert_ne!(text, GOOD, "{from} is not in the scene");
-        let said = complaint(text.as_bytes(), &[]);
-        assert!(
-            said.contains(&format!("s.toml:{line}:")),
-            "{to}: line {line}, not: {said}"
-        );
-        assert!(said.contains(part), "{to}: `{part}` is missing in: {said}");
-    }
+    ]);
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod invariants;
 mod layers;
 mod oracle;
 mod plain_loop;
+mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod scenes;
