@@ -1,6 +1,6 @@
 //! What an event costs: gases of spheres, and a four-ball shot beside the lecture's solver.
 //! `cargo bench --bench exact_flight`
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::cast_precision_loss)]
 
 #[path = "support/paired.rs"]
 mod paired;
