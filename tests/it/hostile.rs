@@ -1,45 +1,62 @@
 //! Scenes made to hurt: nothing panics, and no recording holds a number that is not finite.
 
-use carom::engine::{engines, record};
+use std::cell::RefCell;
+
+use carom::engine::{EngineSpec, engines, record};
+use carom::error::Error;
 use carom::scene::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring};
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 
 use crate::scenes::{body, scene};
 
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
+/// How far the numbers go.
+#[derive(Debug, Clone, Copy)]
+enum Reach {
+    /// As far as doubles do: what Rapier mostly refuses.
+    Wild,
+    /// As far as the squares and inverses of 32 bits do.
+    Tame,
+}
+
+fn number(reach: Reach) -> BoxedStrategy<f64> {
+    let near = prop_oneof![
         Just(0.0),
         Just(1.0),
         Just(1.0 + 1e-12),
         Just(-1.0),
-        -2.0..2.0,
-        Just(1e-300),
-        Just(1e150),
-        Just(-1e300),
-    ]
+        -2.0..2.0
+    ];
+    let far = match reach {
+        Reach::Wild => [1e-300, 1e150, -1e300],
+        Reach::Tame => [1e-9, 1e6, -1e9],
+    };
+    prop_oneof![5 => near, 3 => proptest::sample::select(far.to_vec())].boxed()
 }
 
-fn size() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        Just(0.5),
-        Just(1e-300),
-        Just(1e9),
-        Just(1e-9),
-        0.1..2.0,
-        Just(1e300)
-    ]
+fn size(reach: Reach) -> BoxedStrategy<f64> {
+    let far = match reach {
+        Reach::Wild => [1e-300, 1e9, 1e-9, 1e300],
+        Reach::Tame => [1e-3, 1e4, 1e-6, 1e6],
+    };
+    prop_oneof![1 => Just(0.5), 1 => 0.1..2.0, 4 => proptest::sample::select(far.to_vec())].boxed()
 }
 
-fn effects() -> impl Strategy<Value = Effects> {
+fn effects(reach: Reach) -> impl Strategy<Value = Effects> {
     let fraction = || prop_oneof![Just(0.0), Just(1.0), 0.0..1.0];
     (
         proptest::option::of(fraction()),
-        proptest::option::of((size(), size(), proptest::option::of(size()), fraction())),
-        proptest::option::of(size()),
-        proptest::option::of(size()),
-        proptest::option::of((number(), prop_oneof![Just(0.0), Just(0.1)])),
-        proptest::option::of([number(), number(), number()]),
-        proptest::option::of((size(), size(), size())),
+        proptest::option::of((
+            size(reach),
+            size(reach),
+            proptest::option::of(size(reach)),
+            fraction(),
+        )),
+        proptest::option::of(size(reach)),
+        proptest::option::of(size(reach)),
+        proptest::option::of((number(reach), prop_oneof![Just(0.0), Just(0.1)])),
+        proptest::option::of([number(reach), number(reach), number(reach)]),
+        proptest::option::of((size(reach), size(reach), size(reach))),
     )
         .prop_map(
             |(contact, cushions, drag, rest, attraction, gravity, spring)| Effects {
@@ -72,10 +89,10 @@ fn effects() -> impl Strategy<Value = Effects> {
         )
 }
 
-fn hostile() -> impl Strategy<Value = Scene> {
-    let vector = || [number(), number(), number()];
-    let sphere = (size(), size(), vector(), vector());
-    (proptest::collection::vec(sphere, 2..5), effects()).prop_map(|(spheres, effects)| {
+fn hostile(reach: Reach) -> impl Strategy<Value = Scene> {
+    let vector = || [number(reach), number(reach), number(reach)];
+    let sphere = (size(reach), size(reach), vector(), vector());
+    (proptest::collection::vec(sphere, 2..5), effects(reach)).prop_map(|(spheres, effects)| {
         let names = ["a", "b", "c", "d"];
         let bodies = spheres
             .into_iter()
@@ -86,19 +103,89 @@ fn hostile() -> impl Strategy<Value = Scene> {
     })
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+/// Recordings of one engine.
+#[derive(Debug, Clone, Copy, Default)]
+struct Kept {
+    /// Scenes given, those that failed in earlier runs included.
+    given: u32,
+    /// Recordings made; the other scenes were refused.
+    recorded: u32,
+    /// Those that reached the end of their scene.
+    finished: u32,
+}
 
-    #[test]
-    fn no_engine_panics_or_records_a_nan(scene in hostile(), dt in prop_oneof![Just(0.01), Just(1.0)]) {
-        prop_assume!(scene.check().is_ok());
-        for spec in engines().into_iter().filter(carom::engine::EngineSpec::is_built) {
-            // An engine may refuse a scene by name; it may not panic or keep a NaN.
-            let Ok(recording) = record(&scene, &spec, dt) else { continue };
-            let finite = recording.samples().flatten().all(|state| state.is_finite());
-            prop_assert!(finite, "{}", spec.name);
-            let complete = recording.sample_count() == scene.sample_count() + 1;
-            prop_assert!(complete == recording.outcome.is_finished(), "{}", spec.name);
+const CASES: u32 = 200;
+
+/// How many of the scenes an engine must record, and finish, at the least, in per cent.
+///
+/// Measured over 2000 scenes: the lecture refuses none and brings 55 % to the end; the Rapier
+/// worlds record 51 % to 56 %, which are the tame half and a few, and finish 48 %, as the
+/// matched one does 40 %. Five deviations of 200 draws, 18 %, lie between these and the bounds.
+fn shares(engine: &str) -> [u32; 2] {
+    match engine {
+        "lecture" => [100, 37],
+        "rapier" | "rapier-f64" => [32, 30],
+        "rapier-matched" => [32, 22],
+        other => panic!("measure how many of these scenes `{other}` records, and state it"),
+    }
+}
+
+/// What one engine does with one scene.
+fn run(scene: &Scene, spec: &EngineSpec, dt: f64, kept: &mut Kept) -> Result<(), TestCaseError> {
+    kept.given += 1;
+    let recording = match record(scene, spec, dt) {
+        Ok(recording) => recording,
+        // A refusal names what the engine cannot do; the shares below bound how often.
+        Err(Error::EngineCannot { .. }) if spec.name != "lecture" => return Ok(()),
+        Err(error) => return Err(TestCaseError::fail(format!("{}: {error}", spec.name))),
+    };
+    kept.recorded += 1;
+    kept.finished += u32::from(recording.outcome.is_finished());
+    let finite = recording.samples().flatten().all(|state| state.is_finite());
+    prop_assert!(finite, "{}", spec.name);
+    let complete = recording.sample_count() == scene.sample_count() + 1;
+    prop_assert!(complete == recording.outcome.is_finished(), "{}", spec.name);
+    Ok(())
+}
+
+#[test]
+fn no_engine_panics_or_records_a_nan() {
+    let specs: Vec<_> = engines().into_iter().filter(EngineSpec::is_built).collect();
+    let kept = RefCell::new(vec![Kept::default(); specs.len()]);
+    let mut runner = TestRunner::new(ProptestConfig {
+        cases: CASES,
+        source_file: Some(file!()),
+        ..ProptestConfig::default()
+    });
+    let scenes = prop_oneof![hostile(Reach::Wild), hostile(Reach::Tame)];
+    let input = (scenes, prop_oneof![Just(0.01), Just(1.0)]);
+    let outcome = runner.run(&input, |(scene, dt)| {
+        prop_assert!(scene.check().is_ok(), "the generator makes scenes");
+        for (spec, kept) in specs.iter().zip(kept.borrow_mut().iter_mut()) {
+            run(&scene, spec, dt, kept)?;
         }
+        Ok(())
+    });
+    if let Err(found) = outcome {
+        panic!("{found}");
+    }
+    for (spec, kept) in specs.iter().zip(kept.take()) {
+        let Kept {
+            given,
+            recorded,
+            finished,
+        } = kept;
+        let name = &spec.name;
+        println!("{name}: {recorded} of {given} recorded, {finished} to the end");
+        let [least_recorded, least_finished] = shares(name);
+        assert!(given >= CASES, "{name}: {given} scenes");
+        assert!(
+            100 * recorded >= least_recorded * given,
+            "{name}: {recorded} of {given} recorded, must be {least_recorded} %"
+        );
+        assert!(
+            100 * finished >= least_finished * given,
+            "{name}: {finished} of {given} to the end, must be {least_finished} %"
+        );
     }
 }

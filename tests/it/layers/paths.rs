@@ -57,7 +57,8 @@ impl Scope {
                 self.braces.push(opens_module);
             }
             "}" => {
-                if self.braces.pop() == Some(true) {
+                let closes_module = self.braces.pop() == Some(true);
+                if closes_module {
                     self.module.pop();
                 }
             }
