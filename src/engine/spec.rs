@@ -104,19 +104,6 @@ impl RapierSettings {
 }
 
 impl EngineSpec {
-    /// The same engine without the work of certifying its digits.
-    #[must_use]
-    pub fn uncertified(&self) -> Self {
-        let kind = match &self.kind {
-            EngineKind::Exact(_) => EngineKind::Exact(ExactSettings { certify: false }),
-            kind @ (EngineKind::Impulse | EngineKind::Rapier(_)) => kind.clone(),
-        };
-        Self {
-            kind,
-            ..self.clone()
-        }
-    }
-
     /// Whether it computes step by step, with an error that depends on the step.
     #[must_use]
     pub fn takes_steps(&self) -> bool {

@@ -26,6 +26,11 @@ pub enum Outcome {
         /// The body.
         body: usize,
     },
+    /// The work that a run may take was spent; everything before is kept.
+    BudgetSpent {
+        /// Time up to which it was computed, s.
+        time: f64,
+    },
     /// Impacts followed each other without end.
     Collapsed {
         /// Time at which they ran away, s.
@@ -51,6 +56,7 @@ impl Outcome {
             Self::Finished => "Finished",
             Self::NonFinite { .. } => "NonFinite",
             Self::Disabled { .. } => "Disabled",
+            Self::BudgetSpent { .. } => "BudgetSpent",
             Self::Collapsed { .. } => "Collapsed",
         }
     }
@@ -68,6 +74,9 @@ impl Outcome {
                 "`{}` was disabled by the engine at t = {time} s; the recording ends before it",
                 scene.bodies[*body].name
             ),
+            Self::BudgetSpent { time } => {
+                format!("the work allowed was spent at t = {time} s; the recording ends there")
+            }
             Self::Collapsed { time, a, b } => format!(
                 "impacts ran away at t = {time} s (`{}` and {}); the recording ends before it",
                 scene.bodies[*a].name,

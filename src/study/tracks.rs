@@ -14,12 +14,12 @@ const STATES_MAX: u64 = 100_000;
 pub type Track = Vec<Vec<Vector3>>;
 
 /// The path of a voice: an engine is run again with the same steps and sampled every few of
-/// them, every step where that stays within a bound; truth gets its impacts put in.
+/// them, every step where that stays within a bound; a reference gets its impacts put in.
 ///
 /// # Errors
 /// As [`record`].
 pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
-    let Some(spec) = &voice.spec else {
+    let Some(spec) = voice.spec.as_ref().filter(|spec| spec.takes_steps()) else {
         return Ok(with_corners(scene, &voice.recording));
     };
     let grid = StepGrid::new(scene, dt)?;
@@ -38,7 +38,7 @@ pub fn track(scene: &Scene, voice: &Voice, dt: f64) -> Result<Track> {
             sample_every,
             ..scene.clone()
         },
-        &spec.uncertified(),
+        spec,
         dt,
     )?;
     // A recording ends with its last finite sample on the scene's own grid; so does its path.

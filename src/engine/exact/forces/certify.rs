@@ -17,6 +17,10 @@ const VOICE: &str = "exact";
 /// ten seconds. Larger clusters get there; the digits then say what doubles can vouch for.
 const WIDE_WORK_MAX: f64 = 5e8;
 
+/// Work after which a certified run ends, in forces times bodies squared: some ten seconds. A
+/// clump of many bodies in which impacts never cease gets there.
+const WORK_MAX: f64 = 5e8;
+
 /// The true error may be larger than the difference of two computations that err; by how much
 /// a claim allows for.
 const SAFETY: f64 = 10.0;
@@ -66,6 +70,12 @@ pub fn certified(scene: &Scene) -> Result<Certified> {
         recording.push(&states);
         recording.events.end_interval();
         digits.push(claims.digits(&states, &others));
+        if effort(published.work(), scene.bodies.len()) > WORK_MAX {
+            recording.outcome = Outcome::BudgetSpent {
+                time: scene.sample_time(sample),
+            };
+            break;
+        }
         if published.is_spent() || witness.is_spent() {
             published.go_on_in_doubles(scene, sample)?;
             witness.go_on_in_doubles(scene, sample)?;
@@ -81,6 +91,12 @@ pub fn certified(scene: &Scene) -> Result<Certified> {
             spread: None,
         }),
     })
+}
+
+/// Work done, in forces times bodies squared: each step also solves for the contacts.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn effort(work: Work, bodies: usize) -> f64 {
+    work.force_evaluations as f64 * (bodies * bodies) as f64
 }
 
 /// Computes a scene with forces once, in doubles, without digits, on past collapse.
