@@ -36,7 +36,8 @@ fn main() {
         || run::<Wide>(&orbit, Accuracy::WIDE),
     );
     println!("100 revolutions: A f64, B double-double: {rounds}");
-    for name in ["cluster-8"] {
+    {
+        let name = "cluster-8";
         let scene = Library::Embedded.case(name).expect("a case").scene;
         let best = (0..5)
             .map(|_| {

@@ -22,9 +22,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs =
-        args.engines
-            .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched", "exact"])?;
+    let specs = args
+        .engines
+        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
     let case = scene_or_case(&args.scene, &args.library.library())?;
     let plans = specs
         .iter()

@@ -28,9 +28,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs =
-        args.engines
-            .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched", "exact"])?;
+    let specs = args
+        .engines
+        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
     let dt = args.engines.dt;
     let library = args.library.library();
     let mut names = if args.cases.is_empty() {

@@ -29,7 +29,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = args.engines.specs(&["lecture", "rapier", "exact"])?;
+    let specs = args.engines.specs(&["lecture", "rapier"])?;
     let case = scene_or_case(&args.scene, &args.library.library())?;
     let out = args
         .out

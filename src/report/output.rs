@@ -35,8 +35,10 @@ pub enum Place {
 /// Whether a file in a comparison's folder tells of an engine that may not run this time, or
 /// of the comparison as a whole; the others are written anew in any case.
 fn is_stale(name: &str) -> bool {
-    let table = |kind: &str| name.starts_with(kind) && name.ends_with(".csv");
-    table("trajectory-") || table("events-") || ["README.md", "summary.json"].contains(&name)
+    let table = name.strip_suffix(".csv").unwrap_or_default();
+    let of_voice = ["trajectory-", "events-"];
+    of_voice.iter().any(|kind| table.starts_with(kind))
+        || ["README.md", "summary.json"].contains(&name)
 }
 
 /// Writes tables, pictures, page and summary of a comparison; gives the summary.

@@ -151,9 +151,9 @@ pub(super) fn accept(scene: &Scene) -> Result<()> {
     scene.checked()?;
     let refuse = |what: String, remedy: &str| {
         Err(Error::EngineCannot {
-            engine: "exact".into(),
+            engine: "exact",
             what,
-            remedy: remedy.into(),
+            remedy: remedy.to_owned(),
         })
     };
     let effects = &scene.effects;
