@@ -355,6 +355,11 @@ impl<T: Real> ForcesSimulation<T> {
         if self.outcome.is_none() && self.watchdog.runs_away(self.time.sum.to_f64(), progress) {
             self.collapse(bodies);
         }
+        if self.outcome.is_none() && self.watchdog.is_spent() {
+            self.outcome = Some(Outcome::BudgetSpent {
+                time: self.time.sum.to_f64(),
+            });
+        }
     }
 
     /// A gap that has opened needs no care any more.
