@@ -150,7 +150,7 @@ fn run(scene: &Scene, spec: &EngineSpec, dt: f64, kept: &mut Kept) -> Result<(),
 
 #[test]
 fn no_engine_panics_or_records_a_nan() {
-    // The exact engine is not held to this yet: its counted work has no bound inside a sample.
+    // The exact engine is not held to this yet: it may take minutes for one of these scenes.
     let stepping = |spec: &EngineSpec| spec.is_built() && spec.takes_steps();
     let specs: Vec<_> = engines().into_iter().filter(stepping).collect();
     let kept = RefCell::new(vec![Kept::default(); specs.len()]);
