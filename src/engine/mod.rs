@@ -11,7 +11,7 @@ mod steps;
 
 pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
-pub use record::record;
+pub use record::{drive, record};
 pub use spec::{
     EngineKind, EngineSpec, ExactSettings, Forces, Precision, RapierSettings, engine, engines,
 };

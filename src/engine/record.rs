@@ -1,6 +1,6 @@
 //! The recorder: drives a simulation from sample to sample and keeps what it sees.
 
-use super::{EngineKind, EngineSpec, ExactSettings, StepGrid, exact, prepare};
+use super::{EngineKind, EngineSpec, ExactSettings, Simulation, StepGrid, exact, prepare};
 use crate::error::Result;
 use crate::recording::{Outcome, Recording, initial_states};
 use crate::scene::Scene;
@@ -16,9 +16,18 @@ pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
         return exact::record(scene, &spec.name);
     }
     let mut simulation = prepare(scene, spec, dt)?;
-    let mut recording = Recording::at_start(&spec.name, scene);
+    let mut recording = drive(scene, &spec.name, simulation.as_mut());
     let step = StepGrid::new(scene, dt)?.step;
     recording.step = spec.takes_steps().then_some(step);
+    Ok(recording)
+}
+
+/// Drives a simulation that stands at the start of a scene to its end, and records it.
+///
+/// The recording ends at the last sample in which everything is finite.
+#[must_use]
+pub fn drive(scene: &Scene, voice: &str, simulation: &mut dyn Simulation) -> Recording {
+    let mut recording = Recording::at_start(voice, scene);
     let mut states = initial_states(scene);
     for sample in 1..=scene.sample_count() {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
@@ -37,5 +46,5 @@ pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
         recording.events.end_interval();
     }
     recording.work = simulation.work();
-    Ok(recording)
+    recording
 }

@@ -2,10 +2,11 @@
 
 use carom::case::{Case, Library};
 use carom::engine::Simulation;
+use carom::engine::drive;
 use carom::engine::exact::flight::{FlightSimulation, TieOrder, certified};
 use carom::engine::exact::{Certified, Real, Wide};
 use carom::physics::Vector3;
-use carom::recording::{EventKind, Outcome, Recording, initial_states};
+use carom::recording::{EventKind, Outcome, Recording};
 use carom::scene::{Contact, Cushions, Effects, Gravity, Rest, Scene};
 
 use crate::scenes::{body, scene};
@@ -24,19 +25,7 @@ struct Errors {
 }
 
 fn record<R: Real>(scene: &Scene, mut simulation: FlightSimulation<R>) -> Recording {
-    let mut recording = Recording::at_start("exact", scene);
-    let mut states = initial_states(scene);
-    for sample in 1..=scene.sample_count() {
-        if let Some(outcome) = simulation.advance_to(sample, Some(&mut recording.events)) {
-            recording.outcome = outcome;
-            break;
-        }
-        simulation.state_into(&mut states);
-        recording.push(&states);
-        recording.events.end_interval();
-    }
-    recording.work = simulation.work();
-    recording
+    drive(scene, "exact", &mut simulation)
 }
 
 fn run<R: Real>(scene: &Scene) -> Recording {

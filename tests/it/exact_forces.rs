@@ -2,9 +2,9 @@
 
 use carom::case::Library;
 use carom::compare::{Drift, Sizes, cluster_facts, metrics};
-use carom::engine::Simulation;
-use carom::engine::exact::forces::{Accuracy, ForcesSimulation, Real, Wide, certified, fast};
-use carom::recording::{Outcome, Recording, initial_states};
+use carom::engine::drive;
+use carom::engine::exact::forces::{Accuracy, ForcesSimulation, Real, Wide, certified};
+use carom::recording::{Outcome, Recording};
 use carom::scene::{Attraction, Contact, Cushions, Effects, Gravity, Rest, Scene, Spring};
 
 use crate::scenes::{body, scene};
@@ -12,20 +12,13 @@ use crate::scenes::{body, scene};
 /// A recording by the integrator in that arithmetic.
 fn computed<T: Real>(scene: &Scene, accuracy: Accuracy) -> Recording {
     let mut simulation = ForcesSimulation::<T>::new(scene, accuracy).unwrap();
-    let mut recording = Recording::at_start("exact", scene);
-    let mut states = initial_states(scene);
-    for sample in 1..=scene.sample_count() {
-        let halt = simulation.advance_to(sample, Some(&mut recording.events));
-        if let Some(outcome) = halt {
-            recording.outcome = outcome;
-            break;
-        }
-        simulation.state_into(&mut states);
-        recording.push(&states);
-        recording.events.end_interval();
-    }
-    recording.work = simulation.work();
-    recording
+    drive(scene, "exact", &mut simulation)
+}
+
+/// A recording in doubles, on past collapse; refusals are given back.
+fn fast(scene: &Scene) -> carom::error::Result<Recording> {
+    let mut simulation = ForcesSimulation::<f64>::new(scene, Accuracy::FAST)?;
+    Ok(drive(scene, "exact", &mut simulation))
 }
 
 /// Largest errors: positions over the diagonal of the box, velocities over the largest speed,

@@ -99,31 +99,6 @@ fn effort(work: Work, bodies: usize) -> f64 {
     work.force_evaluations as f64 * (bodies * bodies) as f64
 }
 
-/// Computes a scene with forces once, in doubles, without digits, on past collapse.
-///
-/// # Errors
-/// As [`ForcesSimulation::new`].
-pub fn fast(scene: &Scene) -> Result<Recording> {
-    let mut simulation = ForcesSimulation::<f64>::new(scene, Accuracy::FAST)?;
-    let mut recording = Recording::at_start(VOICE, scene);
-    let mut states = initial_states(scene);
-    for sample in 1..=scene.sample_count() {
-        let halt = simulation.advance_to(sample, Some(&mut recording.events));
-        if let Some(outcome) = halt {
-            recording.outcome = outcome;
-            recording
-                .events
-                .truncate_after(scene.sample_time(sample - 1));
-            break;
-        }
-        simulation.state_into(&mut states);
-        recording.push(&states);
-        recording.events.end_interval();
-    }
-    recording.work = simulation.work();
-    Ok(recording)
-}
-
 /// One of the two computations: wide at first, in doubles once the work is spent.
 struct Voice {
     wide: Option<ForcesSimulation<Wide>>,

@@ -33,6 +33,6 @@ mod touch;
 mod watchdog;
 
 pub use accuracy::Accuracy;
-pub use certify::{certified, fast};
+pub use certify::certified;
 pub use scalar::{Real, Wide};
 pub use simulation::{ForcesSimulation, Undetermined};
