@@ -54,4 +54,4 @@ impl Accuracy {
 ///
 /// The model has no single answer there, so that nothing is lost by ending bounces sooner; and
 /// a cluster of thirty settles in seconds.
-pub(super) const UNDETERMINED_BOUNCE_HEIGHT: f64 = 1e-8;
+pub(super) const UNDETERMINED_BOUNCE_HEIGHT: f64 = 1e-6;

@@ -2,68 +2,79 @@
 
 use super::scalar::Real;
 
-/// The lower triangle L of `A = L Lᵀ`, rows laid flat.
+/// The lower triangle L of `A = L Lᵀ`, grown row by row.
 #[derive(Debug, Clone)]
 pub(super) struct Cholesky<T> {
-    lower: Vec<T>,
-    size: usize,
+    /// Row i holds i + 1 entries.
+    rows: Vec<Vec<T>>,
 }
 
 impl<T: Real> Cholesky<T> {
     /// Of no rows.
     pub(super) fn empty() -> Self {
-        Self {
-            lower: Vec::new(),
-            size: 0,
-        }
+        Self { rows: Vec::new() }
     }
 
     /// Factors the matrix `entry(i, j)`, of which it reads `j <= i`.
     ///
     /// # Errors
-    /// The first row that depends on the rows before it: its pivot falls below `1e-11` of its
-    /// diagonal, where two thirds of a double's digits are gone.
+    /// The first row that depends on the rows before it.
     pub(super) fn of(size: usize, entry: impl Fn(usize, usize) -> T) -> Result<Self, usize> {
-        let mut lower = vec![T::zero(); size * size];
+        let mut factor = Self::empty();
         for i in 0..size {
-            for j in 0..=i {
-                let mut sum = entry(i, j);
-                let diagonal = sum.to_f64();
-                for k in 0..j {
-                    sum = sum - lower[i * size + k] * lower[j * size + k];
-                }
-                lower[i * size + j] = if i == j {
-                    if !(sum.to_f64() > 1e-11 * diagonal && diagonal > 0.0) {
-                        return Err(i);
-                    }
-                    sum.sqrt()
-                } else {
-                    sum / lower[j * size + j]
-                };
-            }
+            factor.grow(|j| entry(i, j)).map_err(|()| i)?;
         }
-        Ok(Self { lower, size })
+        Ok(factor)
+    }
+
+    /// Adds a row and its column; the order of `size` squared. Reads `entry(j)` up to the
+    /// diagonal.
+    ///
+    /// # Errors
+    /// The row depends on the rows before it, and nothing is added: its pivot falls below
+    /// `1e-11` of its diagonal, where two thirds of a double's digits are gone.
+    pub(super) fn grow(&mut self, entry: impl Fn(usize) -> T) -> Result<(), ()> {
+        let size = self.rows.len();
+        let mut own: Vec<T> = Vec::with_capacity(size + 1);
+        for (j, row) in self.rows.iter().enumerate() {
+            let sum = subtract_products(entry(j), &own, row);
+            own.push(sum / row[j]);
+        }
+        let diagonal = entry(size);
+        let pivot = subtract_products(diagonal, &own, &own);
+        if !(pivot.to_f64() > 1e-11 * diagonal.to_f64() && diagonal.to_f64() > 0.0) {
+            return Err(());
+        }
+        own.push(pivot.sqrt());
+        self.rows.push(own);
+        Ok(())
+    }
+
+    /// Forgets all rows from that one on.
+    pub(super) fn truncate(&mut self, size: usize) {
+        self.rows.truncate(size);
     }
 
     /// Solves `A x = right` in place.
     pub(super) fn solve(&self, right: &mut [T]) {
-        let size = self.size;
-        for i in 0..size {
-            let mut sum = right[i];
-            let row = &self.lower[i * size..];
-            for (entry, known) in row.iter().zip(&right[..i]) {
-                sum = sum - *entry * *known;
-            }
-            right[i] = sum / row[i];
+        for (i, row) in self.rows.iter().enumerate() {
+            right[i] = subtract_products(right[i], row, &right[..i]) / row[i];
         }
-        for i in (0..size).rev() {
-            let mut sum = right[i];
-            for (k, known) in right.iter().enumerate().skip(i + 1) {
-                sum = sum - self.lower[k * size + i] * *known;
+        for (i, row) in self.rows.iter().enumerate().rev() {
+            let known = right[i] / row[i];
+            right[i] = known;
+            for (left, entry) in right[..i].iter_mut().zip(row) {
+                *left = *left - *entry * known;
             }
-            right[i] = sum / self.lower[i * size + i];
         }
     }
+}
+
+/// `sum - a . b`, as far as the shorter reaches.
+#[inline]
+fn subtract_products<T: Real>(sum: T, a: &[T], b: &[T]) -> T {
+    let products = a.iter().zip(b);
+    products.fold(sum, |sum, (a, b)| sum - *a * *b)
 }
 
 #[cfg(test)]
@@ -77,6 +88,10 @@ mod tests {
         let mut x = [8.0, 8.0];
         factor.solve(&mut x);
         assert!((x[0] - 1.0).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15);
+        let mut grown = Cholesky::of(2, |i, j| a[i][j]).unwrap();
+        grown.truncate(1);
+        grown.grow(|j| a[1][j]).unwrap();
+        assert_eq!(grown.rows, factor.rows);
         let dependent: [[f64; 2]; 2] = [[4.0, 2.0], [2.0, 1.0]];
         assert_eq!(Cholesky::of(2, |i, j| dependent[i][j]).unwrap_err(), 1);
     }

@@ -6,7 +6,8 @@ use super::cholesky::Cholesky;
 ///
 /// `matrix(i, j)` symmetric and positive semi-definite. `warm` is a guess of the answer. It is
 /// the minimum of `f.A f/2 + b.f` over `f >= 0`, found by the active-set method for
-/// non-negative least squares: finite, since each round lowers the minimum.
+/// non-negative least squares: finite, since each round lowers the minimum. A contact that joins
+/// costs the square of their number, one that leaves at most the cube.
 /// Source: Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23.
 ///
 /// # Errors
@@ -21,81 +22,106 @@ pub(super) fn pressing(
         .iter()
         .fold(0.0_f64, |most, rate| most.max(rate.abs()));
     let tolerance = 1e-13 * scale;
-    let mut forces = vec![0.0; count];
-    let mut pressed: Vec<usize> = Vec::new();
+    let mut active = Active {
+        matrix,
+        rates,
+        forces: vec![0.0; count],
+        pressed: Vec::new(),
+        factor: Cholesky::empty(),
+    };
     for index in (0..count).filter(|index| warm[*index]) {
-        pressed.push(index);
-        if factor(matrix, &pressed).is_err() {
-            pressed.pop();
-        }
+        // One that depends on the others is no loss to a guess.
+        active.add(index).ok();
     }
     // The method is finite; the bound only guards against rounding that makes it cycle.
     for _ in 0..20 * count + 20 {
-        relax(matrix, rates, &mut forces, &mut pressed)?;
-        let rate = |i: usize| -> f64 {
-            rates[i]
-                + pressed
-                    .iter()
-                    .map(|j| matrix(i, *j) * forces[*j])
-                    .sum::<f64>()
-        };
-        let free = (0..count).filter(|i| !pressed.contains(i));
+        active.relax()?;
+        let free = (0..count).filter(|i| !active.pressed.contains(i));
         let worst = free
-            .map(|i| (i, rate(i)))
+            .map(|i| (i, active.rate(i)))
             .min_by(|one, other| one.1.total_cmp(&other.1));
         match worst {
-            Some((index, rate)) if rate < -tolerance => pressed.push(index),
+            Some((index, rate)) if rate < -tolerance => active.add(index)?,
             Some(_) | None => break,
         }
     }
     let mut answer = vec![false; count];
-    for index in pressed {
-        answer[index] = forces[index] > 0.0;
+    for index in active.pressed {
+        answer[index] = active.forces[index] > 0.0;
     }
     Ok(answer)
 }
 
-/// Forces that stop the pressed ones; those that would have to pull are let go, one by one.
-fn relax(
-    matrix: &dyn Fn(usize, usize) -> f64,
-    rates: &[f64],
-    forces: &mut [f64],
-    pressed: &mut Vec<usize>,
-) -> Result<(), usize> {
-    loop {
-        let factor = factor(matrix, pressed)?;
-        let mut wanted: Vec<f64> = pressed.iter().map(|i| -rates[*i]).collect();
-        factor.solve(&mut wanted);
-        // How far towards the wanted forces before the first of them vanishes.
-        let mut share = 1.0_f64;
-        for (index, wanted) in pressed.iter().zip(&wanted) {
-            if *wanted <= 0.0 {
-                let now = forces[*index];
-                share = share.min(if now > 0.0 { now / (now - wanted) } else { 0.0 });
-            }
-        }
-        let complete = wanted.iter().all(|wanted| *wanted > 0.0);
-        for (index, wanted) in pressed.iter().zip(&wanted) {
-            forces[*index] += share * (wanted - forces[*index]);
-        }
-        if complete {
-            return Ok(());
-        }
-        let pulls: Vec<bool> = pressed
-            .iter()
-            .zip(&wanted)
-            .map(|(index, wanted)| *wanted <= 0.0 && forces[*index] <= 1e-15 * wanted.abs())
-            .collect();
-        for (index, _) in pressed.iter().zip(&pulls).filter(|(_, pulls)| **pulls) {
-            forces[*index] = 0.0;
-        }
-        let mut pulls = pulls.iter();
-        pressed.retain(|_| !pulls.next().is_some_and(|pulls| *pulls));
-    }
+/// The contacts taken to press, with the factor of their matrix.
+struct Active<'a> {
+    matrix: &'a dyn Fn(usize, usize) -> f64,
+    rates: &'a [f64],
+    forces: Vec<f64>,
+    pressed: Vec<usize>,
+    factor: Cholesky<f64>,
 }
 
-fn factor(matrix: &dyn Fn(usize, usize) -> f64, pressed: &[usize]) -> Result<Cholesky<f64>, usize> {
-    Cholesky::of(pressed.len(), |i, j| matrix(pressed[i], pressed[j])).map_err(|row| pressed[row])
+impl Active<'_> {
+    fn add(&mut self, index: usize) -> Result<(), usize> {
+        let (matrix, pressed) = (self.matrix, &self.pressed);
+        let entry = |j: usize| matrix(index, *pressed.get(j).unwrap_or(&index));
+        self.factor.grow(entry).map_err(|()| index)?;
+        self.pressed.push(index);
+        Ok(())
+    }
+
+    /// Rate of a contact under the present forces.
+    fn rate(&self, index: usize) -> f64 {
+        let pushes = self.pressed.iter();
+        let pushed: f64 = pushes
+            .map(|j| (self.matrix)(index, *j) * self.forces[*j])
+            .sum();
+        self.rates[index] + pushed
+    }
+
+    /// Forces that stop the pressed ones; those that would have to pull are let go, one by one.
+    fn relax(&mut self) -> Result<(), usize> {
+        loop {
+            let mut wanted: Vec<f64> = self.pressed.iter().map(|i| -self.rates[*i]).collect();
+            self.factor.solve(&mut wanted);
+            // How far towards the wanted forces before the first of them vanishes.
+            let mut share = 1.0_f64;
+            for (index, wanted) in self.pressed.iter().zip(&wanted) {
+                if *wanted <= 0.0 {
+                    let now = self.forces[*index];
+                    share = share.min(if now > 0.0 { now / (now - wanted) } else { 0.0 });
+                }
+            }
+            let complete = wanted.iter().all(|wanted| *wanted > 0.0);
+            for (index, wanted) in self.pressed.iter().zip(&wanted) {
+                self.forces[*index] += share * (wanted - self.forces[*index]);
+            }
+            if complete {
+                return Ok(());
+            }
+            let pulls = |(index, wanted): (&usize, &f64)| {
+                *wanted <= 0.0 && self.forces[*index] <= 1e-15 * wanted.abs()
+            };
+            let pulls: Vec<bool> = self.pressed.iter().zip(&wanted).map(pulls).collect();
+            self.let_go(&pulls)?;
+        }
+    }
+
+    /// Takes out the marked ones.
+    fn let_go(&mut self, marked: &[bool]) -> Result<(), usize> {
+        let first = marked.iter().position(|marked| *marked);
+        let first = first.unwrap_or(self.pressed.len());
+        self.factor.truncate(first);
+        let later = self.pressed.split_off(first);
+        for (index, marked) in later.into_iter().zip(&marked[first..]) {
+            if *marked {
+                self.forces[index] = 0.0;
+            } else {
+                self.add(index)?;
+            }
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -35,6 +35,7 @@ pub struct ForcesSimulation<T: Real> {
     pub(super) law: Law<T>,
     pub(super) surfaces: Surfaces<T>,
     accuracy: Accuracy,
+    duration: f64,
     sample_every: f64,
     sample: usize,
     shown: Vec<BodyState>,
@@ -94,6 +95,7 @@ impl<T: Real> ForcesSimulation<T> {
             law: Law::of(scene),
             surfaces: Surfaces::of(scene),
             accuracy,
+            duration: scene.duration,
             sample_every: scene.sample_every,
             sample: 0,
             shown: Vec::new(),
@@ -243,9 +245,9 @@ impl<T: Real> ForcesSimulation<T> {
             } else if end.is_finite() && end > 0.0 && !SCALES.contains(&end) {
                 self.tau = power_of_two(self.tau * end);
             } else {
-                // Nothing changes at all: any step will do.
-                let end = if end.is_finite() { end } else { 1e3 };
-                return self.settle(series, end);
+                // Where nothing changes, or all in a parabola, one step is good for ever.
+                let remaining = self.duration - self.time.sum.to_f64() + self.sample_every;
+                return self.settle(series, end.min(remaining / self.tau));
             }
         }
         let bodies = self.closest();
