@@ -30,7 +30,7 @@ impl<T: Real> Cholesky<T> {
                 let mut sum = entry(i, j);
                 let diagonal = sum.to_f64();
                 for k in 0..j {
-                    sum = sum - lower[i * size + k] * lower[j * size + k];
+                    sum -= lower[i * size + k] * lower[j * size + k];
                 }
                 lower[i * size + j] = if i == j {
                     if !(sum.to_f64() > 1e-11 * diagonal && diagonal > 0.0) {
@@ -52,14 +52,14 @@ impl<T: Real> Cholesky<T> {
             let mut sum = right[i];
             let row = &self.lower[i * size..];
             for (entry, known) in row.iter().zip(&right[..i]) {
-                sum = sum - *entry * *known;
+                sum -= *entry * *known;
             }
             right[i] = sum / row[i];
         }
         for i in (0..size).rev() {
             let mut sum = right[i];
             for (k, known) in right.iter().enumerate().skip(i + 1) {
-                sum = sum - self.lower[k * size + i] * *known;
+                sum -= self.lower[k * size + i] * *known;
             }
             right[i] = sum / self.lower[i * size + i];
         }
