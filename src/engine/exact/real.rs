@@ -29,14 +29,24 @@ pub trait Real:
     + Send
     + Sync
 {
-    /// Distance from 1 to the next number, as a double.
+    /// Distance from 1 to the next number, as a double: the unit that errors of several
+    /// operations are counted in.
     const EPSILON: f64;
+
+    /// Bound of the relative error that one operation (`+ - * /`, root) makes. Of doubles half of
+    /// [`EPSILON`](Self::EPSILON), as they round to nearest; of wider numbers above it, as they
+    /// do not.
+    const ROUNDING: f64;
 
     /// The same number; every double is one.
     fn from_f64(value: f64) -> Self;
 
     /// The nearest double.
     fn to_f64(self) -> f64;
+
+    /// Times a double, cheaper than times a number of this precision.
+    #[must_use]
+    fn times(self, factor: f64) -> Self;
 
     /// Square root; not a number below 0.
     #[must_use]
@@ -53,6 +63,9 @@ pub trait Real:
     /// `a b - c d`, as accurate as its inputs allow even where the products nearly cancel.
     #[must_use]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+
+    /// `sum + carry += delta`: what rounding takes from `sum` stays in `carry`.
+    fn accumulate(sum: &mut Self, carry: &mut Self, delta: Self);
 
     /// Whether it is a finite number.
     fn is_finite(self) -> bool {
@@ -86,7 +99,7 @@ pub trait Real:
     /// Half of it.
     #[must_use]
     fn half(self) -> Self {
-        self * Self::from_f64(0.5)
+        self.times(0.5)
     }
 
     /// Twice of it.
@@ -98,6 +111,7 @@ pub trait Real:
 
 impl Real for f64 {
     const EPSILON: f64 = f64::EPSILON;
+    const ROUNDING: f64 = f64::EPSILON / 2.0;
 
     #[inline]
     fn from_f64(value: f64) -> Self {
@@ -107,6 +121,11 @@ impl Real for f64 {
     #[inline]
     fn to_f64(self) -> f64 {
         self
+    }
+
+    #[inline]
+    fn times(self, factor: f64) -> Self {
+        self * factor
     }
 
     #[inline]
@@ -130,6 +149,16 @@ impl Real for f64 {
         let second = c * d;
         let error = c.mul_add(d, -second);
         a.mul_add(b, -second) - error
+    }
+
+    /// Knuth's two-sum: the rounding error of the sum, exactly.
+    #[inline]
+    fn accumulate(sum: &mut Self, carry: &mut Self, delta: Self) {
+        let delta = delta + *carry;
+        let total = *sum + delta;
+        let seen = total - *sum;
+        *carry = (*sum - (total - seen)) + (delta - seen);
+        *sum = total;
     }
 
     #[inline]
@@ -159,4 +188,18 @@ pub fn vector<R: Real>(components: [f64; 3]) -> Vector3<R> {
 #[inline]
 pub fn length<R: Real>(v: &Vector3<R>) -> R {
     v.dot(v).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compensation_keeps_what_rounding_takes() {
+        let (mut sum, mut carry) = (1.0, 0.0);
+        for _ in 0..1000 {
+            f64::accumulate(&mut sum, &mut carry, 1e-17);
+        }
+        assert!((sum - 1.0 + carry - 1e-14).abs() < 1e-17);
+    }
 }

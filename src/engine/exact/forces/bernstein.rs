@@ -102,7 +102,7 @@ pub(super) fn polish<T: Real>(coefficients: &[T], (low, high): (f64, f64)) -> T 
         };
         let moved = (next - u).to_f64().abs();
         u = next;
-        if moved <= 2.0 * T::EPSILON * u.to_f64() {
+        if moved <= 2.0 * T::ROUNDING * u.to_f64() {
             break;
         }
     }

@@ -81,7 +81,7 @@ impl<T: Real> Instant<'_, T> {
     pub(super) fn resolve(&self, velocity: &mut [Triple<T>]) -> Result<Aftermath, Touch> {
         let meetings = self.meetings(velocity);
         let fastest = velocity.iter().map(size).fold(0.0, f64::max);
-        let noise = 64.0 * T::EPSILON * fastest;
+        let noise = 64.0 * T::ROUNDING * fastest;
         let before = velocity.to_vec();
         let in_order: Vec<usize> = (0..meetings.len()).collect();
         let impacts = self.sweeps(&meetings, &in_order, noise, velocity);
@@ -364,7 +364,7 @@ impl<T: Real> Instant<'_, T> {
 
 /// Below this a gap is closed up to rounding, `far` being the largest coordinate that enters.
 pub(super) fn closed_below<T: Real>(far: f64) -> f64 {
-    64.0 * T::EPSILON * far
+    64.0 * T::ROUNDING * far
 }
 
 /// Second derivative of a gap that is closed, times the length of its direction.

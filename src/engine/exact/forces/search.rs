@@ -139,7 +139,7 @@ fn gap_series<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch)
                 })
                 .collect();
             let reach = T::from_f64(surfaces.radii[a]) + T::from_f64(surfaces.radii[b]);
-            gap[0] = gap[0] - reach * reach;
+            gap[0] -= reach * reach;
             gap
         }
         Touch::Wall { body, wall } => {

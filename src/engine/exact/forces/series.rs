@@ -37,7 +37,7 @@ impl<T: Real> LinkSeries<T> {
         self.distance.push(d);
         let mut squared = self_convolution(&self.distance);
         if k == 0 {
-            squared = squared + link.softening_squared;
+            squared += link.softening_squared;
         }
         self.squared.push(squared);
         let power = self.next_power(link);
@@ -69,7 +69,7 @@ impl<T: Real> LinkSeries<T> {
         let mut sum = T::zero();
         let mut weight = link.power * order;
         for (s, q) in s[1..=k].iter().rev().zip(q) {
-            sum = sum + (*s * *q).times(weight);
+            sum += (*s * *q).times(weight);
             weight -= link.power + 1.0;
         }
         sum / s[0].times(order)
@@ -83,7 +83,7 @@ fn self_convolution<T: Real>(d: &[Triple<T>]) -> T {
     let mut sum = [T::zero(); 3];
     for (a, b) in d[..half].iter().zip(d.iter().rev()) {
         for axis in 0..3 {
-            sum[axis] = sum[axis] + a[axis] * b[axis];
+            sum[axis] += a[axis] * b[axis];
         }
     }
     let twice = (sum[0] + sum[1] + sum[2]).times(2.0);
@@ -234,10 +234,10 @@ impl<T: Real> Series<T> {
         let mut sum = T::zero();
         for j in 0..=k {
             let [one, other] = [j, k - j].map(|j| between(&self.velocity, j));
-            sum = sum + dot(&one, &other);
+            sum += dot(&one, &other);
             if j > 0 {
                 let d = between(&self.position, j);
-                sum = sum + dot(&d, &between(&self.acceleration, k - j));
+                sum += dot(&d, &between(&self.acceleration, k - j));
             }
         }
         sum
@@ -293,7 +293,7 @@ pub(super) fn contact_matrix<T: Real>(inverse_mass: &[T], one: &Arms<T>, other: 
     for (body, push) in one.iter() {
         for (same, push_other) in other.iter() {
             if body == same {
-                sum = sum + dot(push, push_other) * inverse_mass[*body];
+                sum += dot(push, push_other) * inverse_mass[*body];
             }
         }
     }

@@ -330,7 +330,7 @@ impl<T: Real> ForcesSimulation<T> {
         for (position, velocity) in self.position.iter_mut().zip(&self.velocity) {
             // The series starts from the velocity's sum alone.
             for (axis, carry) in velocity.carry.into_iter().enumerate() {
-                position.carry[axis] = position.carry[axis] + carry * elapsed;
+                position.carry[axis] += carry * elapsed;
             }
         }
         let moved = [
@@ -385,7 +385,7 @@ impl<T: Real> ForcesSimulation<T> {
             for (shown, series) in shown.iter_mut().zip(changes) {
                 for (own, change) in shown.iter_mut().zip(Series::change(series, u)) {
                     for axis in 0..3 {
-                        own[axis] = own[axis] + change[axis];
+                        own[axis] += change[axis];
                     }
                 }
             }
@@ -414,7 +414,7 @@ impl<T: Real> ForcesSimulation<T> {
             let left = T::from_f64(target) - self.time.sum - self.time.carry;
             let beyond = (step.end.times(step.series.tau) - left).to_f64();
             // An event at the sample's instant, up to the rounding of its time, belongs to it.
-            let at_once = 16.0 * T::EPSILON * target.abs();
+            let at_once = 16.0 * T::ROUNDING * target.abs();
             let passes = if step.event.is_some() {
                 beyond <= at_once
             } else {

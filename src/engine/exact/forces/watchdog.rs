@@ -50,7 +50,7 @@ impl Watchdog {
     /// Whether a step is too short to move time: bodies fall into one point, or a force has no
     /// direction.
     pub(super) fn is_vanishing<T: Real>(&self, time: f64, step: f64) -> bool {
-        step <= 4.0 * T::EPSILON * time.max(1e-6 * self.duration)
+        step <= 4.0 * T::ROUNDING * time.max(1e-6 * self.duration)
     }
 
     /// Counts a step; whether events or steps pile up.
