@@ -11,7 +11,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use carom::case::Library;
-use carom::engine::exact::flight::{FlightSimulation, TieOrder};
+use carom::engine::exact::TieOrder;
+use carom::engine::exact::flight::FlightSimulation;
 use carom::engine::{ImpulseSimulation, Simulation, StepGrid};
 use carom::scene::Scene;
 use carom::scene::generate::Gas;

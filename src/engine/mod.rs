@@ -57,7 +57,7 @@ pub fn prepare(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Box<dyn Simu
     let grid = StepGrid::new(scene, dt)?;
     match &spec.kind {
         EngineKind::Impulse => Ok(Box::new(ImpulseSimulation::new(scene, grid))),
-        EngineKind::Exact(_) => exact::simulation(scene),
+        EngineKind::Exact(settings) => exact::simulation(scene, *settings),
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::simulation(scene, settings, grid),
         #[cfg(not(feature = "rapier"))]

@@ -1,6 +1,6 @@
 //! The recorder: drives a simulation from sample to sample and keeps what it sees.
 
-use super::{EngineKind, EngineSpec, ExactSettings, Simulation, StepGrid, exact, prepare};
+use super::{EngineKind, EngineSpec, Simulation, StepGrid, exact, prepare};
 use crate::error::Result;
 use crate::recording::{Outcome, Recording, initial_states};
 use crate::scene::Scene;
@@ -12,8 +12,10 @@ use crate::scene::Scene;
 /// # Errors
 /// As [`prepare`]. A blow-up is no error but the recording's outcome.
 pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
-    if spec.kind == EngineKind::Exact(ExactSettings { certify: true }) {
-        return exact::record(scene, &spec.name);
+    if let EngineKind::Exact(settings) = spec.kind
+        && settings.certify
+    {
+        return exact::record(scene, &spec.name, settings);
     }
     let mut simulation = prepare(scene, spec, dt)?;
     let mut recording = drive(scene, &spec.name, simulation.as_mut());

@@ -32,6 +32,18 @@ pub enum EngineKind {
 pub struct ExactSettings {
     /// Whether a second computation certifies the digits of the first.
     pub certify: bool,
+    /// Bound on the work of each computation, in elementary operations, about one a nanosecond.
+    pub operations: u64,
+}
+
+impl ExactSettings {
+    /// The published settings, with or without certification: some ten seconds a computation.
+    fn bounded(certify: bool) -> Self {
+        Self {
+            certify,
+            operations: 20_000_000_000,
+        }
+    }
 }
 
 /// Floating-point numbers inside Rapier.
@@ -213,12 +225,12 @@ pub fn engines() -> Vec<EngineSpec> {
         row(
             "exact",
             "event-driven, with certified digits",
-            EngineKind::Exact(ExactSettings { certify: true }),
+            EngineKind::Exact(ExactSettings::bounded(true)),
         ),
         row(
             "exact-fast",
             "event-driven, without certification: for speed",
-            EngineKind::Exact(ExactSettings { certify: false }),
+            EngineKind::Exact(ExactSettings::bounded(false)),
         ),
     ]
 }

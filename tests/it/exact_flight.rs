@@ -3,7 +3,8 @@
 use carom::case::{Case, Library};
 use carom::engine::Simulation;
 use carom::engine::drive;
-use carom::engine::exact::flight::{FlightSimulation, TieOrder, certified};
+use carom::engine::exact::TieOrder;
+use carom::engine::exact::flight::{FlightSimulation, certified};
 use carom::engine::exact::{Certified, Real, Wide};
 use carom::physics::Vector3;
 use carom::recording::{EventKind, Outcome, Recording};
@@ -23,6 +24,9 @@ struct Errors {
     /// Of the impulse itself.
     impulse: f64,
 }
+
+/// As much work as the published settings allow.
+const OPERATIONS: u64 = 10_000_000_000;
 
 fn record<R: Real>(scene: &Scene, mut simulation: FlightSimulation<R>) -> Recording {
     drive(scene, "exact", &mut simulation)
@@ -349,7 +353,7 @@ fn assert_honest(name: &str, claimed: &Certified, other: &Recording) -> (u8, u8)
 #[test]
 fn claimed_digits_hold_against_truth_and_are_worth_having() {
     for case in cases() {
-        let claimed = certified(&case.scene).unwrap();
+        let claimed = certified(&case.scene, OPERATIONS).unwrap();
         let least = assert_honest(&case.scene.name, &claimed, case.truth.as_ref().unwrap());
         println!(
             "{:20} {least:?} {:?}",
@@ -375,7 +379,7 @@ fn claimed_digits_hold_in_a_gas_until_none_is_left() {
         };
         let mut scene = recipe.scene().unwrap();
         (scene.duration, scene.sample_every) = (16.0, 0.0625);
-        let claimed = certified(&scene).unwrap();
+        let claimed = certified(&scene, OPERATIONS).unwrap();
         let other = searched::<Wide>(&scene);
         assert_honest("gas", &claimed, &other);
         let digits: Vec<_> = claimed
@@ -420,7 +424,7 @@ fn a_symmetrical_break_is_undetermined_and_a_corner_is_not() {
         ..Effects::default()
     };
     let scene = scene(4.0, 0.5, bodies, effects);
-    let found = certified(&scene)
+    let found = certified(&scene, OPERATIONS)
         .unwrap()
         .undetermined
         .expect("undetermined");
@@ -433,5 +437,5 @@ fn a_symmetrical_break_is_undetermined_and_a_corner_is_not() {
     let mut run = run.unwrap();
     run.advance_to(corner.sample_count(), None);
     assert_eq!(run.simultaneous().len(), 1, "two walls at once");
-    assert_eq!(certified(&corner).unwrap().undetermined, None);
+    assert_eq!(certified(&corner, OPERATIONS).unwrap().undetermined, None);
 }

@@ -3,17 +3,21 @@
 //! Scenes without attraction and springs fly in closed form (`flight`); the others are
 //! integrated by Taylor series (`forces`).
 
+mod effort;
 pub mod flight;
 pub mod forces;
+mod order;
 mod real;
+mod settling;
 mod wide;
 
+pub use order::TieOrder;
 pub use real::Real;
 pub use wide::Wide;
 
 use super::{ExactSettings, Phase, Simulation};
 use crate::error::Result;
-use crate::recording::{Digits, Recording, Undetermined};
+use crate::recording::{Digits, Outcome, Recording, Undetermined};
 use crate::scene::Scene;
 
 /// A recording with what it vouches for.
@@ -32,29 +36,40 @@ fn has_forces(scene: &Scene) -> bool {
     scene.effects.attraction.is_some() || !scene.effects.springs.is_empty()
 }
 
+/// Whether bodies can come to lie on something, for which flights have no closed form either.
+fn can_come_to_lie(scene: &Scene) -> bool {
+    let effects = &scene.effects;
+    let falls = effects.gravity.is_some_and(|g| g.acceleration != [0.0; 3]);
+    falls && (effects.contact.is_some() || effects.cushions.is_some())
+}
+
 /// Puts a scene at its start, in doubles and uncertified.
 ///
 /// # Errors
 /// [`Error::EngineCannot`](crate::error::Error::EngineCannot) for what has no exact meaning.
-pub fn simulation(scene: &Scene) -> Result<Box<dyn Simulation + Send>> {
-    if has_forces(scene) {
+pub fn simulation(scene: &Scene, settings: ExactSettings) -> Result<Box<dyn Simulation + Send>> {
+    let forces = || -> Result<_> {
         let simulation = forces::ForcesSimulation::<f64>::new(scene, forces::Accuracy::FAST)?;
-        return Ok(Box::new(simulation));
+        Ok(simulation.limited(settings.operations))
+    };
+    if has_forces(scene) {
+        return Ok(Box::new(forces()?));
     }
-    let simulation = flight::FlightSimulation::<f64>::new(scene, flight::TieOrder::Rule)?;
-    Ok(Box::new(simulation))
+    let flight = flight::FlightSimulation::<f64>::new(scene, TieOrder::Rule)?;
+    let flight = flight.limited(settings.operations);
+    if can_come_to_lie(scene) {
+        let settling = settling::SettlingSimulation::new(flight, forces()?);
+        return Ok(Box::new(settling));
+    }
+    Ok(Box::new(flight))
 }
 
 /// Computes a scene and vouches for digits.
 ///
 /// # Errors
 /// As [`simulation`].
-pub fn record(scene: &Scene, voice: &str) -> Result<Recording> {
-    let certified = if has_forces(scene) {
-        forces::certified(scene)?
-    } else {
-        flight::certified(scene)?
-    };
+pub fn record(scene: &Scene, voice: &str, settings: ExactSettings) -> Result<Recording> {
+    let certified = certified(scene, settings.operations)?;
     let mut recording = certified.recording;
     voice.clone_into(&mut recording.voice);
     recording.digits = Some(certified.digits);
@@ -62,12 +77,24 @@ pub fn record(scene: &Scene, voice: &str) -> Result<Recording> {
     Ok(recording)
 }
 
+fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
+    if has_forces(scene) {
+        return forces::certified(scene, operations);
+    }
+    let certified = flight::certified(scene, operations)?;
+    let piles_up = matches!(certified.recording.outcome, Outcome::Collapsed { .. });
+    if piles_up && can_come_to_lie(scene) {
+        return forces::certified(scene, operations);
+    }
+    Ok(certified)
+}
+
 /// What the engine does on a scene; nothing else runs.
 ///
 /// # Errors
 /// As [`simulation`].
 pub fn phases(scene: &Scene, settings: ExactSettings) -> Result<Vec<Phase>> {
-    simulation(scene)?;
+    simulation(scene, settings)?;
     let effects = &scene.effects;
     let flight = match (effects.drag.is_some(), effects.gravity.is_some()) {
         _ if has_forces(scene) => "Taylor series of all forces, steps by their own convergence",

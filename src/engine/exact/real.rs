@@ -38,6 +38,9 @@ pub trait Real:
     /// do not.
     const ROUNDING: f64;
 
+    /// Time of an operation, that of doubles being 1.
+    const COST: f64;
+
     /// The same number; every double is one.
     fn from_f64(value: f64) -> Self;
 
@@ -112,6 +115,7 @@ pub trait Real:
 impl Real for f64 {
     const EPSILON: f64 = f64::EPSILON;
     const ROUNDING: f64 = f64::EPSILON / 2.0;
+    const COST: f64 = 1.0;
 
     #[inline]
     fn from_f64(value: f64) -> Self {

@@ -46,6 +46,7 @@ impl Wide {
 impl Real for Wide {
     const EPSILON: f64 = 4.930_380_657_631_324e-32;
     const ROUNDING: f64 = 1e-31;
+    const COST: f64 = 20.0;
 
     #[inline]
     fn from_f64(value: f64) -> Self {

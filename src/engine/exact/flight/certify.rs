@@ -1,10 +1,10 @@
 //! How many digits a run vouches for, and where the model itself has no single answer.
 
 use super::law::State;
-use super::order::TieOrder;
 use super::simulation::{FlightSimulation, Simultaneous};
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
+use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::real::Real;
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
@@ -32,13 +32,17 @@ const SAME: f64 = 1e-9;
 /// one in doubles and two in double-doubles from inputs moved by 2^-90. How far these part is how
 /// errors grow; the claim leaves room for 64 roundings an event and a factor of 10. Where
 /// events coincide, runs with other orders of them are compared.
+/// Units: `operations` bounds each run, in elementary operations.
 ///
 /// # Errors
 /// As [`FlightSimulation::new`].
-pub fn certified(scene: &Scene) -> Result<Certified> {
-    let mut run = FlightSimulation::<Wide>::new(scene, TieOrder::Rule)?;
-    let mut moved = [1, 2].map(|seed| FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed));
-    let mut double = FlightSimulation::<f64>::new(scene, TieOrder::Rule)?;
+pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
+    let mut run = FlightSimulation::<Wide>::new(scene, TieOrder::Rule)?.limited(operations);
+    let mut moved = [1, 2].map(|seed| -> Result<_> {
+        let moved = FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed)?;
+        Ok(moved.limited(operations))
+    });
+    let mut double = FlightSimulation::<f64>::new(scene, TieOrder::Rule)?.limited(operations);
     let mut recording = Recording::at_start("exact", scene);
     let mut states = initial_states(scene);
     let mut growth = vec![Parting::default()];
@@ -76,7 +80,7 @@ pub fn certified(scene: &Scene) -> Result<Certified> {
     let undetermined = if run.simultaneous().is_empty() {
         None
     } else {
-        undetermined(scene, &recording, &growth, &scale, run.simultaneous())?
+        undetermined(scene, &recording, &growth, &scale, &run, operations)?
     };
     Ok(Certified {
         digits: digits(&growth, &scale),
@@ -202,7 +206,8 @@ fn undetermined(
     recording: &Recording,
     growth: &[Parting],
     scale: &Scale,
-    simultaneous: &[Simultaneous],
+    run: &FlightSimulation<Wide>,
+    operations: u64,
 ) -> Result<Option<Undetermined>> {
     let mut first = usize::MAX;
     let mut spread = 0.0_f64;
@@ -212,7 +217,7 @@ fn undetermined(
         TieOrder::Drawn(2),
         TieOrder::Drawn(3),
     ] {
-        let mut other = FlightSimulation::<Wide>::new(scene, order)?;
+        let mut other = FlightSimulation::<Wide>::new(scene, order)?.limited(operations);
         let mut states = initial_states(scene);
         for (sample, parting) in growth.iter().enumerate().skip(1) {
             if other.advance_to(sample, None).is_some() {
@@ -236,6 +241,7 @@ fn undetermined(
         return Ok(None);
     }
     let before = |noted: &&Simultaneous| noted.time <= scene.sample_time(first);
+    let simultaneous = run.simultaneous();
     let Some(culprit) = simultaneous.iter().rfind(before) else {
         return Ok(None);
     };

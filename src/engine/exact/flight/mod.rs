@@ -2,14 +2,13 @@
 //!
 //! `law` says how a body flies; `encounter`, `plane` and `search` when it meets something;
 //! `plan` what comes next for one body, `queue` for all; `world` lets it happen. `grid` keeps
-//! the number of pairs to look at small, `order` holds the rule for simultaneous events.
+//! the number of pairs to look at small.
 
 mod certify;
 mod encounter;
 mod grid;
 mod law;
 mod model;
-mod order;
 mod perturb;
 mod plan;
 mod plane;
@@ -21,5 +20,5 @@ mod turn;
 mod world;
 
 pub use certify::certified;
-pub use order::TieOrder;
+
 pub use simulation::{FlightSimulation, Simultaneous};

@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use super::encounter::clock_to_contact;
 use super::grid::Face;
 use super::law::{Law, State};
-use super::order::{INTERNAL, TieOrder};
 use super::plane::{Approach, clock_to_plane};
 use super::search::{Opening, Search, first_closing};
 use super::world::World;
+use crate::engine::exact::order::{INTERNAL, TieOrder};
 use crate::engine::exact::real::{Real, length};
 use crate::recording::EventKind;
 

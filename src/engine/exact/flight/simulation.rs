@@ -3,12 +3,13 @@
 use super::grid::Face;
 use super::law::State;
 use super::model::{Model, accept, start};
-use super::order::TieOrder;
 use super::plan::Planned;
 use super::queue::Queue;
 use super::runaway::Runaway;
 use super::world::World;
 use crate::engine::Simulation;
+use crate::engine::exact::effort::Effort;
+use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::real::{Real, vector};
 use crate::error::Result;
 use crate::physics::BodyState;
@@ -67,6 +68,7 @@ pub struct FlightSimulation<R: Real> {
     pub(super) simultaneous: Vec<Simultaneous>,
     pub(super) crowd: Vec<usize>,
     pub(super) slowed: Vec<usize>,
+    pub(super) effort: Effort,
 }
 
 impl<R: Real> FlightSimulation<R> {
@@ -116,10 +118,18 @@ impl<R: Real> FlightSimulation<R> {
             simultaneous: Vec::new(),
             crowd: Vec::new(),
             slowed: Vec::new(),
+            effort: Effort::limited(u64::MAX),
             world: World::new(model, order, states, R::zero()),
         };
         simulation.plan_all();
         simulation
+    }
+
+    /// The same with a bound on the work: past so many elementary operations it ends.
+    #[must_use]
+    pub fn limited(mut self, operations: u64) -> Self {
+        self.effort = Effort::limited(operations);
+        self
     }
 
     /// Instants at which events that share a body are simultaneous, as far as inputs are sure.
@@ -144,6 +154,13 @@ impl<R: Real> FlightSimulation<R> {
     pub(super) fn states(&self) -> impl Iterator<Item = State<R>> {
         let time = self.sample_time();
         (0..self.agendas.len()).map(move |body| self.world.state_at(body, time))
+    }
+
+    /// The time of the last event, and the states then.
+    pub(in crate::engine::exact) fn here(&self) -> (f64, Vec<BodyState>) {
+        let now = self.world.now;
+        let states = (0..self.agendas.len()).map(|body| rounded(&self.world.state_at(body, now)));
+        (now.to_f64(), states.collect())
     }
 
     pub(super) fn plan_all(&mut self) {
@@ -201,10 +218,7 @@ impl<R: Real> Simulation for FlightSimulation<R> {
 
     fn state_into(&self, into: &mut [BodyState]) {
         for (state, mine) in into.iter_mut().zip(self.states()) {
-            *state = BodyState {
-                position: mine.position.map(Real::to_f64),
-                velocity: mine.velocity.map(Real::to_f64),
-            };
+            *state = rounded(&mine);
         }
     }
 
@@ -232,6 +246,13 @@ impl<R: Real> Simulation for FlightSimulation<R> {
             pair_tests: self.world.pair_tests,
             force_evaluations: 0,
         }
+    }
+}
+
+fn rounded<R: Real>(state: &State<R>) -> BodyState {
+    BodyState {
+        position: state.position.map(Real::to_f64),
+        velocity: state.velocity.map(Real::to_f64),
     }
 }
 

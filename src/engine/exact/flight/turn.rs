@@ -1,25 +1,36 @@
 //! Taking the next event: which one among simultaneous ones, and what it does.
 
-use super::order::INTERNAL;
 use super::plan::Deed;
 use super::simulation::{FlightSimulation, Simultaneous};
 use super::world::Impact;
+use crate::engine::exact::order::INTERNAL;
 use crate::engine::exact::real::Real;
 use crate::recording::{Event, EventKind, EventLog, Outcome};
 
 /// Changes of cell, a body, without any event between them that are worth their while.
 const CROSSINGS_A_BODY: u64 = 20;
 
+/// Operations to take an event and plan what comes next, the pairs aside.
+const OPERATIONS_A_TURN: f64 = 200.0;
+
+/// Operations to foresee the impact of a pair.
+const OPERATIONS_A_PAIR: f64 = 30.0;
+
 /// At most so many instants with simultaneous events are remembered, from the first on.
 const SIMULTANEOUS_KEPT: usize = 64;
 
 impl<R: Real> FlightSimulation<R> {
-    /// All events up to a time. Gives the outcome if they never end.
+    /// All events up to a time. Gives the outcome if they never end, or are too many.
     pub(super) fn run_to(&mut self, time: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
         loop {
             let (due, first) = self.queue.first();
             if due > time {
                 return None;
+            }
+            if self.effort.is_spent() {
+                return Some(Outcome::BudgetSpent {
+                    time: self.world.now.to_f64(),
+                });
             }
             let near = due + self.world.model.near;
             let body = if self.queue.is_crowded(near) {
@@ -30,10 +41,20 @@ impl<R: Real> FlightSimulation<R> {
             } else {
                 first
             };
+            let before = self.world.pair_tests;
             if let Some(outcome) = self.take(body, due, log) {
                 return Some(outcome);
             }
+            self.count(self.world.pair_tests - before);
         }
+    }
+
+    /// Counts a turn in which so many pairs were looked at.
+    #[inline]
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    fn count(&mut self, looked_at: u64) {
+        let operations = OPERATIONS_A_TURN + OPERATIONS_A_PAIR * looked_at as f64;
+        self.effort.add::<R>(operations);
     }
 
     /// The body whose event goes first of all that are due together; none if a plan among them

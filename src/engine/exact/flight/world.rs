@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::grid::{Face, Grid};
 use super::law::State;
 use super::model::Model;
-use super::order::TieOrder;
+use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::real::{Real, length};
 use crate::recording::Wall;
 

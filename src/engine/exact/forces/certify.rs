@@ -5,21 +5,18 @@ use super::scalar::Wide;
 use super::simulation::{ForcesSimulation, Undetermined};
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
+use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
-use crate::recording::{Digits, EventLog, Outcome, Recording, Work, initial_states};
+use crate::recording::{self, Digits, EventLog, Outcome, Recording, Work, initial_states};
 use crate::scene::Scene;
 
 /// The name of the voice in recordings.
 const VOICE: &str = "exact";
 
-/// Work in double-double after which a scene goes on in doubles, in forces times order: some
-/// ten seconds. Larger clusters get there; the digits then say what doubles can vouch for.
-const WIDE_WORK_MAX: f64 = 5e8;
-
-/// Work after which a certified run ends, in forces times bodies squared: some ten seconds. A
-/// clump of many bodies in which impacts never cease gets there.
-const WORK_MAX: f64 = 5e8;
+/// Operations in double-double after which a scene goes on in doubles: a second or two. Larger
+/// clusters get there; the digits then say what doubles can vouch for.
+const WIDE_OPERATIONS: u64 = 2_000_000_000;
 
 /// The true error may be larger than the difference of two computations that err; by how much
 /// a claim allows for.
@@ -32,30 +29,39 @@ const SAFETY: f64 = 10.0;
 /// sample by sample. Equation: digits = `-log10(10 (difference + rounding)/scale)`, the
 /// difference being the largest so far, so that a chance agreement claims nothing.
 ///
+/// An impact on touching bodies that another order of the same impacts would have answered
+/// otherwise ends the certainty: from there on one of the answers is computed, with no digits.
+/// Where the model is undetermined, another order is computed too, for the spread.
+/// Units: `operations` bounds each computation, in elementary operations.
+///
 /// # Errors
 /// As [`ForcesSimulation::new`].
-pub fn certified(scene: &Scene) -> Result<Certified> {
-    let mut published = Voice::new(scene, Accuracy::WIDE, Accuracy::FAST)?;
-    let mut witness = Voice::new(scene, Accuracy::WIDE_AGAIN, Accuracy::FAST_AGAIN)?;
+pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
+    let mut published = Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?;
+    let again = [Accuracy::WIDE_AGAIN, Accuracy::FAST_AGAIN];
+    let mut witness = Some(Voice::new(scene, again, operations)?);
     let mut recording = Recording::at_start(VOICE, scene);
     let mut states = initial_states(scene);
     let mut others = states.clone();
     let mut claims = Claims::default();
     let mut digits = vec![claims.digits(&states, &states)];
-    let mut undetermined = None;
-    for sample in 1..=scene.sample_count() {
+    let mut sample = 1;
+    while sample <= scene.sample_count() {
+        let events = published.is_wide().then(|| recording.events.clone());
         let halt = published.advance_to(sample, Some(&mut recording.events));
-        let again = witness.advance_to(sample, None);
-        undetermined = published.undetermined();
-        let stopped =
-            published
-                .unsettled()
-                .map(|Undetermined { time, bodies }| Outcome::Collapsed {
-                    time,
-                    a: bodies[0],
-                    b: (bodies[1] != bodies[0]).then_some(bodies[1]),
-                });
-        if let Some(outcome) = halt.or(stopped) {
+        let halted = witness.as_mut().map(|it| it.advance_to(sample, None));
+        let spent = |halt: Option<Outcome>| matches!(halt, Some(Outcome::BudgetSpent { .. }));
+        if let Some(events) = events
+            && (spent(halt) || spent(halted.flatten()))
+        {
+            recording.events = events;
+            published.narrow(scene, sample - 1, &states);
+            if let Some(witness) = &mut witness {
+                witness.narrow(scene, sample - 1, &moved(&others));
+            }
+            continue;
+        }
+        if let Some(outcome) = halt {
             recording.outcome = outcome;
             recording
                 .events
@@ -63,83 +69,122 @@ pub fn certified(scene: &Scene) -> Result<Certified> {
             break;
         }
         published.state_into(&mut states);
-        witness.state_into(&mut others);
-        if again.is_some() || witness.unsettled().is_some() {
-            claims.withdraw();
+        if let Some(from) = published.unsettled() {
+            published.narrow(scene, sample, &states);
+            published.double.settle_sooner(from);
+            witness = None;
+        }
+        match &witness {
+            Some(witness) if halted.flatten().is_none() => witness.state_into(&mut others),
+            Some(_) | None => claims.withdraw(),
         }
         recording.push(&states);
         recording.events.end_interval();
         digits.push(claims.digits(&states, &others));
-        if effort(published.work(), scene.bodies.len()) > WORK_MAX {
-            recording.outcome = Outcome::BudgetSpent {
-                time: scene.sample_time(sample),
-            };
-            break;
-        }
-        if published.is_spent() || witness.is_spent() {
-            published.go_on_in_doubles(scene, sample)?;
-            witness.go_on_in_doubles(scene, sample)?;
-        }
+        sample += 1;
     }
     recording.work = published.work();
+    let undetermined = match published.undetermined() {
+        Some(from) => Some(recording::Undetermined {
+            time: from.time,
+            bodies: from.bodies.to_vec(),
+            spread: Some(spread(scene, &recording, from.time, operations)?),
+        }),
+        None => None,
+    };
     Ok(Certified {
         recording,
         digits,
-        undetermined: undetermined.map(|from| crate::recording::Undetermined {
-            time: from.time,
-            bodies: from.bodies.to_vec(),
-            spread: None,
-        }),
+        undetermined,
     })
 }
 
-/// Work done, in forces times bodies squared: each step also solves for the contacts.
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn effort(work: Work, bodies: usize) -> f64 {
-    work.force_evaluations as f64 * (bodies * bodies) as f64
+/// How far the impacts in the opposite order lead away, from a time on, over all bodies.
+fn spread(scene: &Scene, recording: &Recording, from: f64, operations: u64) -> Result<f64> {
+    let samples = recording.sample_count();
+    let before = (1..samples).find(|sample| scene.sample_time(*sample) >= from);
+    let start = before.map_or(samples, |sample| sample) - 1;
+    let mut states = recording.sample(start).to_vec();
+    let mut other = ForcesSimulation::<f64>::new(scene, Accuracy::FAST)?
+        .with_order(TieOrder::Backwards)
+        .limited(operations);
+    other.set_state(start, &states);
+    let mut spread = 0.0_f64;
+    for sample in start + 1..samples {
+        if other.advance_to(sample, None).is_some() {
+            break;
+        }
+        other.state_into(&mut states);
+        for (own, other) in recording.sample(sample).iter().zip(&states) {
+            spread = spread.max((own.position - other.position).norm());
+        }
+    }
+    Ok(spread)
 }
 
-/// One of the two computations: wide at first, in doubles once the work is spent.
+/// States moved by half an ulp, so that two computations do not share their rounding.
+fn moved(states: &[BodyState]) -> Vec<BodyState> {
+    let move_up = |vector: &Vector3| vector.map(|x| x * (1.0 + f64::EPSILON));
+    let moved = |state: &BodyState| BodyState {
+        position: move_up(&state.position),
+        velocity: move_up(&state.velocity),
+    };
+    states.iter().map(moved).collect()
+}
+
+/// One of the two computations: wide at first, in doubles once that work is spent.
 struct Voice {
     wide: Option<ForcesSimulation<Wide>>,
     double: ForcesSimulation<f64>,
-    wide_order: usize,
-    /// Work done before the change.
+    /// What the wide one did, once it is gone.
     before: Work,
+    undetermined: Option<Undetermined>,
 }
 
 impl Voice {
-    fn new(scene: &Scene, wide: Accuracy, double: Accuracy) -> Result<Self> {
+    fn new(scene: &Scene, [wide, double]: [Accuracy; 2], operations: u64) -> Result<Self> {
+        let limit = WIDE_OPERATIONS.min(operations);
         Ok(Self {
-            wide: Some(ForcesSimulation::new(scene, wide)?),
-            double: ForcesSimulation::new(scene, double)?,
-            wide_order: wide.order,
+            wide: Some(ForcesSimulation::new(scene, wide)?.limited(limit)),
+            double: ForcesSimulation::new(scene, double)?.limited(operations),
             before: Work::default(),
+            undetermined: None,
         })
     }
 
-    fn simulation(&mut self) -> &mut dyn Simulation {
-        match &mut self.wide {
+    fn is_wide(&self) -> bool {
+        self.wide.is_some()
+    }
+
+    fn simulation(&self) -> &dyn Simulation {
+        match &self.wide {
             Some(wide) => wide,
-            None => &mut self.double,
+            None => &self.double,
         }
     }
 
     fn advance_to(&mut self, sample: usize, log: Option<&mut EventLog>) -> Option<Outcome> {
-        self.simulation().advance_to(sample, log)
-    }
-
-    fn state_into(&mut self, into: &mut [BodyState]) {
-        self.simulation().state_into(into);
-    }
-
-    fn undetermined(&self) -> Option<Undetermined> {
-        match &self.wide {
-            Some(wide) => wide.undetermined(),
-            None => self.double.undetermined(),
+        match &mut self.wide {
+            Some(wide) => wide.advance_to(sample, log),
+            None => self.double.advance_to(sample, log),
         }
     }
 
+    fn state_into(&self, into: &mut [BodyState]) {
+        self.simulation().state_into(into);
+    }
+
+    /// Where the model first ceased to have a single answer.
+    fn undetermined(&self) -> Option<Undetermined> {
+        let now = match &self.wide {
+            Some(wide) => wide.undetermined(),
+            None => self.double.undetermined(),
+        };
+        self.undetermined.or(now)
+    }
+
+    /// The impact that ends the certainty, once: it is none of the computation in doubles that
+    /// goes on from there.
     fn unsettled(&self) -> Option<Undetermined> {
         match &self.wide {
             Some(wide) => wide.unsettled(),
@@ -147,28 +192,18 @@ impl Voice {
         }
     }
 
-    /// Whether the wide computation has done its share.
-    fn is_spent(&self) -> bool {
-        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        self.wide.as_ref().is_some_and(|wide| {
-            wide.work().force_evaluations as f64 * self.wide_order as f64 > WIDE_WORK_MAX
-        })
-    }
-
-    fn go_on_in_doubles(&mut self, scene: &Scene, sample: usize) -> Result<()> {
-        scene.checked()?;
+    /// Goes on in doubles from these states, if it has not yet.
+    fn narrow(&mut self, scene: &Scene, sample: usize, states: &[BodyState]) {
         if let Some(wide) = self.wide.take() {
-            let mut states = initial_states(scene);
-            wide.state_into(&mut states);
-            self.double.set_state(sample, &states);
+            let kept = |from: &Undetermined| from.time <= scene.sample_time(sample);
+            self.undetermined = wide.undetermined().filter(kept);
             self.before = wide.work();
+            self.double.set_state(sample, states);
         }
-        Ok(())
     }
 
-    fn work(&mut self) -> Work {
-        let before = self.before;
-        let now = self.simulation().work();
+    fn work(&self) -> Work {
+        let (before, now) = (self.before, self.simulation().work());
         Work {
             steps: before.steps + now.steps,
             pair_tests: before.pair_tests + now.pair_tests,

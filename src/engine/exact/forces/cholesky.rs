@@ -64,7 +64,7 @@ impl<T: Real> Cholesky<T> {
             let known = right[i] / row[i];
             right[i] = known;
             for (left, entry) in right[..i].iter_mut().zip(row) {
-                *left = *left - *entry * known;
+                *left -= *entry * known;
             }
         }
     }

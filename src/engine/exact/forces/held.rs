@@ -2,9 +2,12 @@
 
 use super::cholesky::Cholesky;
 use super::scalar::{Real, Triple};
-use super::series::contact_matrix;
+use super::series::{as_real, contact_matrix};
 use super::simulation::ForcesSimulation;
 use super::touch::{Arms, Touch, arms};
+
+/// Operations for an entry of the matrix of contacts.
+pub(super) const OPERATIONS_AN_ENTRY: f64 = 12.0;
 
 impl<T: Real> ForcesSimulation<T> {
     /// Takes what rounding opened or moved in held contacts out of positions and velocities,
@@ -16,6 +19,9 @@ impl<T: Real> ForcesSimulation<T> {
         if self.held.is_empty() {
             return Ok(Cholesky::empty());
         }
+        let count = as_real(self.held.len());
+        self.effort
+            .add::<T>(count * count * (count / 3.0 + OPERATIONS_AN_ENTRY));
         let (mut position, mut velocity) = (self.positions(), self.velocities());
         let inverse_mass = self.law.inverse_mass.clone();
         let (places, factor) = self.held_matrix(&position)?;

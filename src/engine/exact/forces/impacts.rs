@@ -2,17 +2,25 @@
 
 use super::cholesky::Cholesky;
 use super::complementarity::pressing;
+use super::held::OPERATIONS_AN_ENTRY;
 use super::law::Law;
 use super::scalar::{Real, Triple, dot, minus, size};
 use super::search::{Cause, Fresh};
-use super::series::{applied_acceleration, contact_matrix};
+use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
+use crate::engine::exact::order::TieOrder;
 
 /// Impacts at one instant past which the rest is taken as one inelastic impact of all.
 const IMPACTS_MAX: usize = 20_000;
 
 /// Rounds of sticking and pressing at one instant; each takes energy out, few are needed.
 const ROUNDS_MAX: u32 = 50;
+
+/// Operations to ask whether a touching pair approaches, in both orders of the impacts.
+const OPERATIONS_A_MEETING: f64 = 20.0;
+
+/// Operations to ask whether a pair touches, twice the two forces between it included.
+const OPERATIONS_A_PAIR: f64 = 40.0;
 
 /// Velocities that two orders of the same impacts may differ by before the model is called
 /// undetermined, relative to the largest speed.
@@ -37,6 +45,8 @@ pub(super) struct Aftermath {
     pub(super) undetermined: bool,
     /// Whether one of them was between surfaces that pressed on each other.
     pub(super) in_cluster: bool,
+    /// Elementary operations that it took, about.
+    pub(super) operations: f64,
 }
 
 /// The rules and the place of an instant.
@@ -45,6 +55,7 @@ pub(super) struct Instant<'a, T> {
     pub(super) surfaces: &'a Surfaces<T>,
     /// A bounce that would rise less than this share of the pair's reach is none.
     pub(super) bounce_height: f64,
+    pub(super) order: TieOrder,
     pub(super) position: &'a [Triple<T>],
     /// The contacts that pressed until now.
     pub(super) held: &'a [Touch],
@@ -100,7 +111,11 @@ impl<T: Real> Instant<'_, T> {
                 .zip(&other)
                 .any(|(one, other)| size(&minus(one, other)) > SAME_ANSWER * fastest);
         }
+        let (count, bodies) = (as_real(meetings.len()), as_real(self.position.len()));
+        aftermath.operations = OPERATIONS_A_MEETING * count * as_real(aftermath.impacts.len() + 1)
+            + OPERATIONS_A_PAIR * bodies * bodies;
         for _ in 0..ROUNDS_MAX {
+            aftermath.operations += count * count * (count + 4.0 * OPERATIONS_AN_ENTRY);
             self.stick(&meetings, noise, velocity, &mut aftermath)?;
             self.press(&meetings, noise, velocity, &mut aftermath)?;
             let moved = self.stop(&meetings, noise, velocity, &aftermath.held)?;
@@ -143,9 +158,9 @@ impl<T: Real> Instant<'_, T> {
         Ok(true)
     }
 
-    /// Everything that touches, in the model's order.
+    /// Everything that touches, in the order asked for.
     fn meetings(&self, velocity: &[Triple<T>]) -> Vec<Meeting<T>> {
-        let applied = applied_acceleration(self.law, self.position, velocity);
+        let applied = self.law.acceleration(self.position, velocity);
         let mut in_cluster = vec![false; self.position.len()];
         for body in self.held.iter().flat_map(|touch| touch.bodies()) {
             in_cluster[body] = true;
@@ -178,7 +193,9 @@ impl<T: Real> Instant<'_, T> {
                 least_bounce: (2.0 * self.bounce_height * length * press.max(0.0)).sqrt(),
             }
         };
-        touches.map(meeting).collect()
+        let mut meetings: Vec<_> = touches.map(meeting).collect();
+        meetings.sort_by_key(|meeting| self.order.rank(meeting.touch.event()));
+        meetings
     }
 
     /// Whether the gap is zero up to the rounding of the positions, or to the least bounce.
@@ -273,7 +290,7 @@ impl<T: Real> Instant<'_, T> {
         velocity: &[Triple<T>],
         aftermath: &mut Aftermath,
     ) -> Result<(), Touch> {
-        let applied = applied_acceleration(self.law, self.position, velocity);
+        let applied = self.law.acceleration(self.position, velocity);
         let speed =
             |meeting: &Meeting<T>| meeting.arms.rate(velocity).to_f64() / meeting.reach.to_f64();
         aftermath.held.clear();

@@ -1,6 +1,6 @@
 //! The forces of a scene in the one shape that the Taylor recurrences ask for.
 
-use super::scalar::{Real, Triple};
+use super::scalar::{Real, Triple, add_scaled, dot, minus};
 use crate::scene::Scene;
 
 /// A force along the line between two bodies, and a damper on their relative velocity.
@@ -20,6 +20,31 @@ pub(super) struct Link<T> {
     pub(super) damping: Option<T>,
     /// s².
     pub(super) softening_squared: T,
+}
+
+impl<T: Real> Link<T> {
+    /// `scale (d² + s²)^power` of that squared distance.
+    pub(super) fn scaled_power(&self, squared: T) -> T {
+        let root = squared.sqrt();
+        let inverse = if self.power < -1.0 {
+            T::from_f64(1.0) / (squared * root)
+        } else {
+            T::from_f64(1.0) / root
+        };
+        self.scale * inverse
+    }
+
+    /// The force on body a.
+    fn force(&self, position: &[Triple<T>], velocity: &[Triple<T>]) -> Triple<T> {
+        let [a, b] = self.ends;
+        let d = minus(&position[b], &position[a]);
+        let factor = self.offset + self.scaled_power(dot(&d, &d) + self.softening_squared);
+        let mut force = d.map(|d| d * factor);
+        if let Some(damping) = self.damping {
+            add_scaled(&mut force, damping, &minus(&velocity[b], &velocity[a]));
+        }
+        force
+    }
 }
 
 /// All forces of a scene.
@@ -72,6 +97,37 @@ impl<T: Real> Law<T> {
             links,
             drag: drag.map(|drag| T::from_f64(drag.coefficient)),
             gravity: gravity.map(T::from_f64),
+        }
+    }
+
+    /// Accelerations by all of it. Shape: `[body]`.
+    pub(super) fn acceleration(
+        &self,
+        position: &[Triple<T>],
+        velocity: &[Triple<T>],
+    ) -> Vec<Triple<T>> {
+        let mut acceleration = vec![self.gravity; position.len()];
+        for link in &self.links {
+            let [a, b] = link.ends;
+            let force = link.force(position, velocity);
+            add_scaled(&mut acceleration[a], self.inverse_mass[a], &force);
+            add_scaled(&mut acceleration[b], -self.inverse_mass[b], &force);
+        }
+        self.add_drag(velocity, &mut acceleration);
+        acceleration
+    }
+
+    pub(super) fn add_drag(&self, velocity: &[Triple<T>], acceleration: &mut [Triple<T>]) {
+        let Some(drag) = self.drag else { return };
+        for (body, inverse_mass) in self.inverse_mass.iter().enumerate() {
+            let rate = -(drag * *inverse_mass);
+            add_scaled(&mut acceleration[body], rate, &velocity[body]);
+        }
+    }
+
+    pub(super) fn add_gravity(&self, acceleration: &mut [Triple<T>]) {
+        for a in acceleration {
+            add_scaled(a, T::from_f64(1.0), &self.gravity);
         }
     }
 }

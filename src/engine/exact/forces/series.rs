@@ -57,13 +57,7 @@ impl<T: Real> LinkSeries<T> {
         let (s, q) = (&self.squared, &self.power);
         let k = q.len();
         if k == 0 {
-            let root = s[0].sqrt();
-            let inverse = if link.power < -1.0 {
-                T::from_f64(1.0) / (s[0] * root)
-            } else {
-                T::from_f64(1.0) / root
-            };
-            return link.scale * inverse;
+            return link.scaled_power(s[0]);
         }
         let order = as_real(k);
         let mut sum = T::zero();
@@ -146,7 +140,11 @@ impl<T: Real> Series<T> {
             position: vec![position],
             velocity: vec![velocity],
             acceleration: Vec::with_capacity(order),
-            links: vec![LinkSeries::with_order(order); law.links.len()],
+            links: law
+                .links
+                .iter()
+                .map(|_| LinkSeries::with_order(order))
+                .collect(),
         }
     }
 
@@ -178,16 +176,9 @@ impl<T: Real> Series<T> {
             add_scaled(&mut acceleration[a], law.inverse_mass[a], &force);
             add_scaled(&mut acceleration[b], -law.inverse_mass[b], &force);
         }
-        if let Some(drag) = law.drag {
-            for (body, inverse_mass) in law.inverse_mass.iter().enumerate() {
-                let rate = -(drag * *inverse_mass);
-                add_scaled(&mut acceleration[body], rate, &velocity[body]);
-            }
-        }
+        law.add_drag(velocity, &mut acceleration);
         if k == 0 {
-            for a in &mut acceleration {
-                add_scaled(a, T::from_f64(1.0), &law.gravity);
-            }
+            law.add_gravity(&mut acceleration);
         }
         acceleration
     }
@@ -273,16 +264,6 @@ impl<T: Real> Series<T> {
         }
         sum
     }
-}
-
-/// Accelerations without contact forces. Shape: `[body]`.
-pub(super) fn applied_acceleration<T: Real>(
-    law: &Law<T>,
-    position: &[Triple<T>],
-    velocity: &[Triple<T>],
-) -> Vec<Triple<T>> {
-    let start = (position.to_vec(), velocity.to_vec());
-    Series::at(law, start, &[], (1, 1.0)).applied(law, 0)
 }
 
 /// Entry of the matrix of contacts: what a push at one does to the rate of the other.

@@ -7,11 +7,13 @@ use super::law::Law;
 use super::refuse::check;
 use super::scalar::{Real, Triple, size};
 use super::search::{Cause, Fresh, Upcoming, first_event};
-use super::series::Series;
+use super::series::{Series, as_real};
 use super::span::span;
 use super::touch::{Surfaces, Touch};
 use super::watchdog::Watchdog;
 use crate::engine::Simulation;
+use crate::engine::exact::effort::Effort;
+use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::BodyState;
 use crate::recording::{Event, EventLog, Outcome, Work, initial_states};
@@ -22,6 +24,9 @@ const SHORT_ORDER: usize = 8;
 
 /// Steps between these multiples of the scale of time keep every coefficient a number.
 const SCALES: std::ops::Range<f64> = 1e-6..1e6;
+
+/// Operations to see that a pair cannot meet within a step.
+const OPERATIONS_A_LOOK: f64 = 10.0;
 
 /// Scales of time that are tried.
 const TRIES_MAX: u32 = 16;
@@ -35,6 +40,7 @@ pub struct ForcesSimulation<T: Real> {
     pub(super) law: Law<T>,
     pub(super) surfaces: Surfaces<T>,
     accuracy: Accuracy,
+    order: TieOrder,
     duration: f64,
     sample_every: f64,
     sample: usize,
@@ -55,6 +61,7 @@ pub struct ForcesSimulation<T: Real> {
     undetermined: Option<Undetermined>,
     unsettled: Option<Undetermined>,
     work: Work,
+    pub(super) effort: Effort,
 }
 
 /// An instant at which another order of simultaneous impacts would have given another answer:
@@ -95,6 +102,7 @@ impl<T: Real> ForcesSimulation<T> {
             law: Law::of(scene),
             surfaces: Surfaces::of(scene),
             accuracy,
+            order: TieOrder::Rule,
             duration: scene.duration,
             sample_every: scene.sample_every,
             sample: 0,
@@ -115,9 +123,24 @@ impl<T: Real> ForcesSimulation<T> {
             undetermined: None,
             unsettled: None,
             work: Work::default(),
+            effort: Effort::limited(u64::MAX),
         };
         simulation.set_state(0, &initial_states(scene));
         Ok(simulation)
+    }
+
+    /// The same with simultaneous impacts in that order.
+    #[must_use]
+    pub fn with_order(mut self, order: TieOrder) -> Self {
+        self.order = order;
+        self
+    }
+
+    /// The same with a bound on the work: past so many elementary operations it ends.
+    #[must_use]
+    pub fn limited(mut self, operations: u64) -> Self {
+        self.effort = Effort::limited(operations);
+        self
     }
 
     /// Where the model ceased to have a single answer, if it did.
@@ -131,6 +154,12 @@ impl<T: Real> ForcesSimulation<T> {
     #[must_use]
     pub fn unsettled(&self) -> Option<Undetermined> {
         self.unsettled
+    }
+
+    /// Ends bounces in clusters sooner from here on, after an answer that was not the only one.
+    pub(super) fn settle_sooner(&mut self, since: Undetermined) {
+        self.undetermined.get_or_insert(since);
+        self.unsettled = Some(since);
     }
 
     /// Contacts that press at present.
@@ -170,6 +199,27 @@ impl<T: Real> ForcesSimulation<T> {
         }
     }
 
+    /// Puts the bodies into these states at a time, after the last sample reached.
+    pub(in crate::engine::exact) fn go_on_from(&mut self, time: f64, states: &[BodyState]) {
+        let wide = |vector: &crate::physics::Vector3| {
+            exactly([vector.x, vector.y, vector.z].map(T::from_f64))
+        };
+        self.shown = states.to_vec();
+        self.time = Exact {
+            sum: T::from_f64(time),
+            carry: T::zero(),
+        };
+        self.position = states.iter().map(|state| wide(&state.position)).collect();
+        self.velocity = states.iter().map(|state| wide(&state.velocity)).collect();
+        self.held.clear();
+        self.fresh.clear();
+        self.step = None;
+        self.outcome = None;
+        self.undetermined = None;
+        self.unsettled = None;
+        self.watchdog.restart(time);
+    }
+
     /// The impacts of this instant, and which contacts press from here on.
     fn resolve(&mut self, trigger: Option<(Touch, Cause)>, log: Option<&mut EventLog>) {
         let position = self.positions();
@@ -178,6 +228,7 @@ impl<T: Real> ForcesSimulation<T> {
             law: &self.law,
             surfaces: &self.surfaces,
             bounce_height: self.bounce_height(),
+            order: self.order,
             position: &position,
             held: &self.held,
             trigger,
@@ -193,7 +244,9 @@ impl<T: Real> ForcesSimulation<T> {
             fresh,
             undetermined,
             in_cluster,
+            operations,
         } = aftermath;
+        self.effort.add::<T>(operations);
         let time = self.time.sum.to_f64();
         if undetermined {
             let touch = trigger.map(|(touch, _)| touch);
@@ -231,12 +284,19 @@ impl<T: Real> ForcesSimulation<T> {
         let Ok(factor) = self.close_held() else {
             return;
         };
-        if self.after_event && self.plan_short(&factor) {
-            return;
-        }
         let order = self.accuracy.order;
-        for _ in 0..TRIES_MAX {
+        for attempt in 0..TRIES_MAX {
             let mut series = self.series();
+            if attempt == 0 && self.after_event {
+                self.extend(&mut series, &factor, SHORT_ORDER.min(order));
+                if let Some(Upcoming { at, touch, cause }) = self.soon(&series) {
+                    let event = Some((touch, cause));
+                    let end = at;
+                    self.work.steps += 1;
+                    self.step = Some(Step { series, end, event });
+                    return;
+                }
+            }
             self.extend(&mut series, &factor, order);
             let end = span(&series, &self.law, self.accuracy.tolerance);
             if !series.is_finite() || end.is_nan() {
@@ -254,27 +314,24 @@ impl<T: Real> ForcesSimulation<T> {
         self.collapse(bodies);
     }
 
-    /// Bounces that follow each other closely need few orders: tries with these, and whether
-    /// the next event came within what they reach.
-    fn plan_short(&mut self, factor: &Cholesky<T>) -> bool {
-        let mut series = self.series();
-        self.extend(&mut series, factor, SHORT_ORDER.min(self.accuracy.order));
-        let end = span(&series, &self.law, self.accuracy.tolerance);
+    /// The next event if it comes within what a series of few orders reaches, as bounces do that
+    /// follow each other closely.
+    fn soon(&mut self, series: &Series<T>) -> Option<Upcoming<T>> {
+        let end = span(series, &self.law, self.accuracy.tolerance);
         if !series.is_finite() || !end.is_finite() {
-            return false;
+            return None;
         }
-        let looked_at = &mut self.work.pair_tests;
-        let event = first_event(&series, &self.surfaces, end, &self.fresh, looked_at);
-        let Some(Upcoming { at, touch, cause }) = event else {
-            return false;
-        };
-        self.work.steps += 1;
-        self.step = Some(Step {
-            series,
-            end: at,
-            event: Some((touch, cause)),
-        });
-        true
+        self.look(series, end)
+    }
+
+    /// The first event within so much of a series.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    fn look(&mut self, series: &Series<T>, end: f64) -> Option<Upcoming<T>> {
+        let mut looked_at = 0;
+        let event = first_event(series, &self.surfaces, end, &self.fresh, &mut looked_at);
+        self.work.pair_tests += looked_at;
+        self.effort.add::<f64>(OPERATIONS_A_LOOK * looked_at as f64);
+        event
     }
 
     fn series(&self) -> Series<T> {
@@ -290,6 +347,12 @@ impl<T: Real> ForcesSimulation<T> {
         let per_body = usize::from(law.drag.is_some()) + usize::from(gravity);
         let forces = law.links.len() + per_body * law.inverse_mass.len();
         self.work.force_evaluations += (forces * (order - series.order())) as u64;
+        // Each order of a link or a held contact multiplies all orders before it.
+        let orders = as_real(order) * as_real(order) - as_real(series.order()).powi(2);
+        let chains = as_real(law.links.len() + self.held.len());
+        let solutions = as_real(self.held.len()).powi(2) * as_real(order);
+        self.effort
+            .add::<T>(4.0 * chains * orders + 2.0 * solutions);
         series.extend(law, factor, order);
     }
 
@@ -302,8 +365,7 @@ impl<T: Real> ForcesSimulation<T> {
         }
         self.tau = power_of_two(end * series.tau);
         self.work.steps += 1;
-        let looked_at = &mut self.work.pair_tests;
-        let event = first_event(&series, &self.surfaces, end, &self.fresh, looked_at);
+        let event = self.look(&series, end);
         let (end, event) = match event {
             Some(Upcoming { at, touch, cause }) => (at, Some((touch, cause))),
             None => (T::from_f64(end), None),
@@ -357,11 +419,6 @@ impl<T: Real> ForcesSimulation<T> {
         if self.outcome.is_none() && self.watchdog.runs_away(self.time.sum.to_f64(), progress) {
             self.collapse(bodies);
         }
-        if self.outcome.is_none() && self.watchdog.is_spent() {
-            self.outcome = Some(Outcome::BudgetSpent {
-                time: self.time.sum.to_f64(),
-            });
-        }
     }
 
     /// A gap that has opened needs no care any more.
@@ -407,6 +464,12 @@ impl<T: Real> ForcesSimulation<T> {
             self.resolve(None, log.as_deref_mut());
         }
         while self.outcome.is_none() {
+            if self.effort.is_spent() {
+                self.outcome = Some(Outcome::BudgetSpent {
+                    time: self.time.sum.to_f64(),
+                });
+                return;
+            }
             let Some(step) = self.step.take() else {
                 self.plan();
                 continue;
@@ -449,25 +512,8 @@ impl<T: Real> Simulation for ForcesSimulation<T> {
 
     #[allow(clippy::cast_precision_loss, reason = "samples stay far below 2^53")]
     fn set_state(&mut self, sample: usize, states: &[BodyState]) {
-        let wide = |vector: &crate::physics::Vector3| {
-            exactly([vector.x, vector.y, vector.z].map(T::from_f64))
-        };
         self.sample = sample;
-        self.shown = states.to_vec();
-        let time = T::from_f64(sample as f64 * self.sample_every);
-        self.time = Exact {
-            sum: time,
-            carry: T::zero(),
-        };
-        self.position = states.iter().map(|state| wide(&state.position)).collect();
-        self.velocity = states.iter().map(|state| wide(&state.velocity)).collect();
-        self.held.clear();
-        self.fresh.clear();
-        self.step = None;
-        self.outcome = None;
-        self.undetermined = None;
-        self.unsettled = None;
-        self.watchdog.restart(time.to_f64());
+        self.go_on_from(sample as f64 * self.sample_every, states);
     }
 
     fn work(&self) -> Work {

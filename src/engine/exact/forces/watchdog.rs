@@ -11,9 +11,6 @@ const WINDOW: u32 = 100_000;
 /// Share of the duration: at 1e-3 no scene takes more than 1e8 steps.
 const PROGRESS_MIN: f64 = 1e-3;
 
-/// Steps that a run may take in all: over a hundred times the 8,494 of the case `cluster-8`.
-const STEPS_MAX: u64 = 1_000_000;
-
 /// Watches the progress of time over steps.
 #[derive(Debug, Clone)]
 pub(super) struct Watchdog {
@@ -21,7 +18,6 @@ pub(super) struct Watchdog {
     standstill: u32,
     steps: u32,
     window_start: f64,
-    total: u64,
 }
 
 impl Watchdog {
@@ -31,7 +27,6 @@ impl Watchdog {
             standstill: 0,
             steps: 0,
             window_start: 0.0,
-            total: 0,
         }
     }
 
@@ -40,11 +35,6 @@ impl Watchdog {
             window_start: time,
             ..Self::new(self.duration)
         };
-    }
-
-    /// Whether the steps of a run are spent.
-    pub(super) fn is_spent(&self) -> bool {
-        self.total >= STEPS_MAX
     }
 
     /// Whether a step is too short to move time: bodies fall into one point, or a force has no
@@ -60,7 +50,6 @@ impl Watchdog {
             self.standstill = 0;
         }
         self.steps += 1;
-        self.total += 1;
         if self.steps == WINDOW {
             let stalled = time - self.window_start < PROGRESS_MIN * self.duration;
             self.steps = 0;
