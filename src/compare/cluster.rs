@@ -8,7 +8,12 @@ use crate::recording::Recording;
 use crate::scene::Scene;
 
 /// Surfaces nearer than this share of the sum of the radii count as touching.
-const TOUCHING: f64 = 1e-3;
+///
+/// An engine that takes steps lets the bodies of a clump hop: they overlap by up to about 2 % of
+/// the radii in a step of 0.01 s, are pushed out and fall back. A share well below that counts
+/// the hops instead of the clump; from 2 % to 5 % the lecture's two clusters collapse at the same
+/// sample, or the one beside it, on every engine.
+const TOUCHING: f64 = 0.02;
 
 /// What became of bodies that attract and collide.
 #[derive(Debug, Clone, PartialEq, Serialize)]
