@@ -8,7 +8,7 @@ mod metrics;
 mod sizes;
 mod verdict;
 
-pub use cluster::{ClusterFacts, cluster_facts};
+pub use cluster::{ClusterFacts, TOUCHING, cluster_facts};
 pub use divergence::{Divergence, DivergenceSample};
 pub use events::{Disagreement, EventAgreement, compare_events};
 pub use horizon::horizon;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::format::{code, whole_percent};
 use super::template::fill;
 use super::{engineering, percent};
-use crate::compare::{RIGHT_WITHIN, Verdict};
+use crate::compare::{ClusterFacts, RIGHT_WITHIN, TOUCHING, Verdict};
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary};
 
@@ -23,6 +23,7 @@ struct Page<'a> {
     pictures: &'a [&'a str],
     shown: String,
     voices: Vec<VoiceRow>,
+    cluster: Option<ClusterTable>,
     pairs: Vec<PairRow>,
     settings: Vec<Settings>,
 }
@@ -41,6 +42,23 @@ struct VoiceRow {
     digits: String,
 }
 
+/// What became of the cluster in each voice, the reference first.
+#[derive(Serialize)]
+struct ClusterTable {
+    until: String,
+    touching: String,
+    rows: Vec<ClusterRow>,
+}
+
+#[derive(Serialize)]
+struct ClusterRow {
+    name: String,
+    collapse: String,
+    energy_lost: String,
+    clump: usize,
+    bound: usize,
+}
+
 #[derive(Serialize)]
 struct PairRow {
     names: String,
@@ -53,6 +71,7 @@ struct PairRow {
     momentum: String,
     matched: usize,
     impact_time: String,
+    impulse: String,
     disagreement: String,
 }
 
@@ -88,6 +107,7 @@ pub(super) fn case_page(
             .iter()
             .map(|voice| voice_row(summary, voice, unit))
             .collect(),
+        cluster: cluster_table(summary),
         pairs: summary
             .pairs
             .iter()
@@ -242,11 +262,47 @@ fn voice_row(summary: &Summary, voice: &VoiceSummary, unit: &str) -> VoiceRow {
     }
 }
 
+fn cluster_table(summary: &Summary) -> Option<ClusterTable> {
+    let is_reference = |voice: &VoiceSummary| summary.reference.as_ref() == Some(&voice.voice);
+    let (first, others): (Vec<_>, Vec<_>) =
+        summary.voices.iter().partition(|voice| is_reference(voice));
+    let voices = first.into_iter().chain(others);
+    let facts = voices.filter_map(|voice| Some((voice, voice.cluster?)));
+    let facts: Vec<_> = facts.collect();
+    let row = |(voice, facts): &(&VoiceSummary, ClusterFacts)| ClusterRow {
+        name: if is_reference(voice) {
+            format!("{} (reference)", voice.voice)
+        } else {
+            voice.voice.clone()
+        },
+        collapse: facts
+            .collapse_time_s
+            .map_or("–".into(), |time| format!("{} s", engineering(time))),
+        energy_lost: percent(facts.energy_lost),
+        clump: facts.largest_clump,
+        bound: facts.bound_bodies,
+    };
+    // One time for all, as `cluster_facts` has it.
+    let (_, any) = facts.first()?;
+    Some(ClusterTable {
+        until: format!("{} s", engineering(any.until_s)),
+        touching: whole_percent(TOUCHING),
+        rows: facts.iter().map(row).collect(),
+    })
+}
+
 fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
     let speed = if unit.is_empty() {
         String::new()
     } else {
         format!("{unit}/s")
+    };
+    let matched = |difference: String| {
+        if pair.impacts_matched > 0 {
+            difference
+        } else {
+            "–".to_owned()
+        }
     };
     PairRow {
         names: format!("{} – {}", pair.engine_a, pair.engine_b),
@@ -258,7 +314,11 @@ fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
         energy: percent(pair.energy_difference_max),
         momentum: percent(pair.momentum_difference_max),
         matched: pair.impacts_matched,
-        impact_time: format!("{} s", engineering(pair.impact_time_difference_max_s)),
+        impact_time: matched(format!(
+            "{} s",
+            engineering(pair.impact_time_difference_max_s)
+        )),
+        impulse: matched(percent(pair.impulse_difference_max)),
         disagreement: pair
             .first_disagreement
             .as_ref()
@@ -280,4 +340,74 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", engineering(value))
         .trim_end()
         .to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Library;
+    use crate::engine::{DEFAULT_DT, engine};
+    use crate::recording::Recording;
+    use crate::study::side_by_side;
+
+    /// The page of a case on the lecture's engine, with this truth if any.
+    fn page(case: &str, truth: Option<fn(&crate::scene::Scene) -> Recording>) -> String {
+        let mut case = Library::Embedded.case(case).unwrap();
+        if let Some(truth) = truth {
+            case.truth = Some(truth(&case.scene));
+        }
+        let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
+        case_page(&Summary::of(&comparison), &[], &["lecture"], false).unwrap()
+    }
+
+    /// The cells of the table that has this in its first row: `[row][cell]`, without the rule.
+    fn table(page: &str, header: &str) -> Vec<Vec<String>> {
+        let lines = page.lines().skip_while(|line| !line.contains(header));
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect();
+        lines
+            .take_while(|line| line.starts_with('|'))
+            .filter(|line| !line.starts_with("|---"))
+            .map(cells)
+            .collect()
+    }
+
+    #[test]
+    fn the_cluster_table_names_its_time_and_the_reference_first() {
+        let page = page(
+            "cluster-8",
+            Some(|scene| Recording::at_start("truth", scene)),
+        );
+        assert!(page.contains("## The cluster until 0 s"), "{page}");
+        let rows = table(&page, "time of collapse");
+        let names: Vec<_> = rows.iter().map(|row| row[1].as_str()).collect();
+        assert_eq!(names, ["voice", "truth (reference)", "lecture"]);
+        assert_eq!(rows[1][2..], rows[2][2..]);
+    }
+
+    /// An oblique impact that is seen late has another line of centres, so another impulse.
+    /// Without a matched impact there is no difference, rather than one of zero.
+    #[test]
+    fn matched_impacts_show_how_far_time_and_impulse_are_off() {
+        let pair = |page: &str| {
+            let rows = table(page, "largest impulse difference");
+            let column = |name: &str| rows[0].iter().position(|cell| cell == name).unwrap();
+            [
+                "impacts matched",
+                "largest time difference",
+                "largest impulse difference",
+            ]
+            .map(|name| rows[1][column(name)].clone())
+        };
+        let oblique = pair(&page("oblique-elastic", None));
+        assert_eq!(oblique[0], "1");
+        assert!(
+            oblique[1].ends_with(" s") && oblique[1] != "0 s",
+            "{oblique:?}"
+        );
+        assert!(
+            oblique[2].ends_with(" %") && oblique[2] != "0 %",
+            "{oblique:?}"
+        );
+        assert_eq!(pair(&page("kepler-circle", None)), ["0", "–", "–"]);
+    }
 }

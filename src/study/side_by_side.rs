@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use crate::case::Case;
 use crate::compare::{
-    Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, compare_events, metrics,
+    ClusterFacts, Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, cluster_facts,
+    compare_events, metrics,
 };
 use crate::engine::{EngineSpec, record};
 use crate::error::{Error, Result};
@@ -113,6 +114,15 @@ impl SideBySide {
             ))
         };
         judged.filter_map(verdict).collect()
+    }
+
+    /// What became of the cluster in each voice, all at one time; none where the bodies are no
+    /// cluster. Shape: `[voice]`.
+    #[must_use]
+    pub fn cluster_facts(&self) -> Option<Vec<ClusterFacts>> {
+        let voices = self.voices.iter();
+        let measured = voices.map(|voice| (&voice.recording, voice.metrics.as_slice()));
+        cluster_facts(&self.scene, &measured.collect::<Vec<_>>(), &self.scale)
     }
 
     /// The comparison of two voices, in either order.

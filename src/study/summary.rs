@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Refusal, SideBySide, Voice};
-use crate::compare::{Disagreement, Divergence, Drift, EventAgreement, Sizes, Verdict};
+use crate::compare::{
+    ClusterFacts, Disagreement, Divergence, Drift, EventAgreement, Sizes, Verdict,
+};
 use crate::engine::{EngineSpec, notes, warnings};
 use crate::recording::{Digits, Event, EventCounts, EventKind, Outcome, Undetermined, Work};
 use crate::scene::{LengthUnit, Scene};
@@ -84,6 +86,9 @@ pub struct VoiceSummary {
     pub digits_min: Option<Digits>,
     /// From when on the model has no single answer.
     pub undetermined: Option<Undetermined>,
+    /// What became of the cluster, up to the last sample that all voices have; none where the
+    /// bodies are no cluster.
+    pub cluster: Option<ClusterFacts>,
     /// Drift of energy and momentum, and the deepest penetration.
     #[serde(flatten)]
     pub drift: Drift,
@@ -140,6 +145,8 @@ impl Summary {
     #[must_use]
     pub fn of(comparison: &SideBySide) -> Self {
         let scene = &comparison.scene;
+        let clusters = comparison.cluster_facts();
+        let cluster = |place: usize| clusters.as_ref().map(|facts| facts[place]);
         Self {
             carom_version: env!("CARGO_PKG_VERSION"),
             scene: scene.name.clone(),
@@ -159,7 +166,8 @@ impl Summary {
             voices: comparison
                 .voices
                 .iter()
-                .map(|voice| VoiceSummary::of(scene, voice))
+                .enumerate()
+                .map(|(place, voice)| VoiceSummary::of(scene, voice, cluster(place)))
                 .collect(),
             reference: comparison.reference().map(|voice| voice.name().to_owned()),
             verdicts: comparison.verdicts(),
@@ -184,7 +192,7 @@ impl Summary {
 }
 
 impl VoiceSummary {
-    fn of(scene: &Scene, voice: &Voice) -> Self {
+    fn of(scene: &Scene, voice: &Voice, cluster: Option<ClusterFacts>) -> Self {
         let recording = &voice.recording;
         Self {
             voice: voice.name().to_owned(),
@@ -208,6 +216,7 @@ impl VoiceSummary {
             work: recording.work,
             digits_min: recording.fewest_digits(scene),
             undetermined: recording.undetermined.clone(),
+            cluster,
             drift: voice.drift,
         }
     }
@@ -286,4 +295,45 @@ fn describe(scene: &Scene, event: &Event) -> String {
         EventKind::Rest { body } => format!("`{}` stop", name(body)),
     };
     format!("{what} at {:.4} s", event.time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Library;
+    use crate::engine::{DEFAULT_DT, engine};
+    use crate::recording::Recording;
+    use crate::study::side_by_side;
+
+    fn clusters(
+        case: &str,
+        truth: impl Fn(&Scene) -> Option<Recording>,
+    ) -> Vec<Option<ClusterFacts>> {
+        let mut case = Library::Embedded.case(case).unwrap();
+        case.truth = truth(&case.scene);
+        let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
+        let voices = Summary::of(&comparison).voices;
+        voices.into_iter().map(|voice| voice.cluster).collect()
+    }
+
+    #[test]
+    fn cluster_facts_stand_where_bodies_attract_and_collide() {
+        let facts = clusters("cluster-8", |_| None)[0].unwrap();
+        assert_eq!(facts.until_s, 4.0);
+        assert_eq!(
+            (facts.largest_clump, facts.bound_bodies),
+            (8, 8),
+            "{facts:?}"
+        );
+        assert_eq!(clusters("headon-equal", |_| None), [None]);
+    }
+
+    /// To its own end, the lecture's run has collapsed.
+    #[test]
+    fn a_voice_that_ends_early_ends_the_facts_of_all() {
+        let start = |scene: &Scene| Some(Recording::at_start("truth", scene));
+        let facts = clusters("cluster-8", start);
+        assert_eq!(facts[0].unwrap().until_s, 0.0);
+        assert_eq!(facts[0], facts[1]);
+    }
 }

@@ -147,6 +147,9 @@ fn a_report_is_whole_and_the_same_every_time() {
                 assert!(bytes.starts_with(b"\x89PNG\r\n"), "{case}/{picture}");
             }
         }
+        let own = fs::read_to_string(folder.join("README.md")).unwrap();
+        let is_cluster = own.contains("| time of collapse |");
+        assert_eq!(is_cluster, case == "cluster-8", "{case}");
         let metrics = fs::read_to_string(folder.join("metrics.csv")).unwrap();
         assert!(metrics.starts_with(
             "time,engine,kinetic_energy,potential_energy,total_energy,momentum_x,momentum_y,\

@@ -310,10 +310,11 @@ fn the_lectures_cluster_collapses() {
         }
     }
     let at = metrics(&scene, &whole);
-    let drift = Drift::of(&at, &Sizes::of(&whole, &at));
+    let sizes = Sizes::of(&whole, &at);
+    let drift = Drift::of(&at, &sizes);
     assert!(drift.max_penetration < 1e-12, "{drift:?}");
     assert!(drift.momentum_drift_max < 1e-12, "{drift:?}");
-    let facts = cluster_facts(&scene, &whole);
+    let facts = cluster_facts(&scene, &[(&whole, &at)], &sizes).unwrap()[0];
     assert_eq!(
         (facts.largest_clump, facts.bound_bodies),
         (8, 8),
