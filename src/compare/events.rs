@@ -135,20 +135,25 @@ fn merged(histories: &[Histories; 2]) -> Vec<(usize, usize)> {
 /// Impacts of one body within a step of each other have no order: a stepping engine handles
 /// them at the same instant. After a disagreement the bodies that take part, and whoever meets
 /// them later, are no longer compared. An impact within two steps of the end that only one
-/// recording has is no disagreement: the other may have it just past the end. Which recording
+/// recording has is no disagreement: the other may have it just past the end; the end is that
+/// of the samples that both vouch for, and what comes later is not compared. Which recording
 /// comes first makes no difference.
 #[must_use]
 pub fn compare_events(scene: &Scene, a: &Recording, b: &Recording) -> EventAgreement {
     let bodies = scene.bodies.len();
     let step = a.step.unwrap_or(0.0).max(b.step.unwrap_or(0.0));
-    let samples = a.sample_count().min(b.sample_count());
-    let end = scene.sample_time(samples - 1) - 2.0 * step;
+    let samples = a.comparable_samples(scene).min(b.comparable_samples(scene));
+    let last = scene.sample_time(samples.max(1) - 1);
+    let end = last - 2.0 * step;
     let mut histories = [Histories::of(a, bodies), Histories::of(b, bodies)];
     let mut parted = vec![false; bodies];
     let mut agreement = EventAgreement::default();
     for (side, place) in merged(&histories) {
         if histories[side].done[place] {
             continue;
+        }
+        if histories[side].impacts[place].time > last {
+            break;
         }
         let other = 1 - side;
         let event = histories[side].take(place);

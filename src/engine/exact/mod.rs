@@ -3,6 +3,7 @@
 //! Scenes without attraction and springs fly in closed form (`flight`); the others are
 //! integrated by Taylor series (`forces`).
 
+mod claim;
 mod effort;
 pub mod flight;
 pub mod forces;

@@ -4,6 +4,7 @@ use super::law::State;
 use super::simulation::{FlightSimulation, Simultaneous};
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
+use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::real::Real;
 use crate::engine::exact::wide::Wide;
@@ -19,9 +20,6 @@ const ROUNDINGS_AN_EVENT: f64 = 64.0;
 
 /// Room between what two moved runs show and what is claimed.
 const SAFETY: f64 = 10.0;
-
-/// No more digits are claimed: the published numbers are doubles.
-const DIGITS_MAX: f64 = 15.0;
 
 /// Answers that differ by less than this share of the scene's size are the same.
 const SAME: f64 = 1e-9;
@@ -129,41 +127,11 @@ impl Parting {
     }
 }
 
-/// The lengths and speeds against which digits count.
-#[derive(Debug, Clone, Copy)]
-struct Scale {
-    diagonal: f64,
-    speed: f64,
-    coordinate: f64,
-}
-
-impl Scale {
-    fn of(recording: &Recording) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        let (mut speed, mut coordinate) = (0.0_f64, 0.0_f64);
-        for state in recording.samples().flatten() {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(state.position[axis]);
-                high[axis] = high[axis].max(state.position[axis]);
-            }
-            speed = speed.max(state.velocity.norm());
-            coordinate = coordinate.max(state.position.norm());
-        }
-        let sides = [0, 1, 2].map(|axis| high[axis] - low[axis]);
-        Self {
-            diagonal: sides.iter().map(|side| side * side).sum::<f64>().sqrt(),
-            speed,
-            coordinate,
-        }
-    }
-}
-
 /// Digits from errors; once a digit of a position is lost it does not come back.
 ///
 /// A velocity may differ at one sample alone, when an impact falls on it: the sample claims
 /// nothing then, but its neighbours do.
 fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
-    let rounding = 0.5 * f64::EPSILON;
     let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
     let mut digits = Vec::with_capacity(growth.len());
     for (sample, parting) in growth.iter().enumerate() {
@@ -174,30 +142,9 @@ fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
             .fold(f64::INFINITY, |least, near| least.min(near.velocity));
         velocity = velocity.max(lasting);
         let of_velocity = velocity.max(parting.velocity);
-        digits.push(Digits {
-            position: count(position + rounding * scale.coordinate, scale.diagonal),
-            velocity: count(of_velocity + rounding * scale.speed, scale.speed),
-        });
+        digits.push(scale.digits(position, of_velocity));
     }
     digits
-}
-
-/// Whole digits of something known up to `error`.
-fn count(error: f64, size: f64) -> u8 {
-    if error == 0.0 {
-        return 15;
-    }
-    let digits = -(error / size).log10();
-    if digits.is_nan() {
-        return 0;
-    }
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 0 and 15"
-    )]
-    let whole = digits.floor().clamp(0.0, DIGITS_MAX) as u8;
-    whole
 }
 
 /// Runs other orders of simultaneous events, and tells where they first part.

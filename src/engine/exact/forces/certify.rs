@@ -5,10 +5,11 @@ use super::scalar::Wide;
 use super::simulation::{ForcesSimulation, Undetermined};
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
+use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
-use crate::recording::{self, Digits, EventLog, Outcome, Recording, Work, initial_states};
+use crate::recording::{self, EventLog, Outcome, Recording, Work, initial_states};
 use crate::scene::Scene;
 
 /// The name of the voice in recordings.
@@ -26,7 +27,7 @@ const SAFETY: f64 = 10.0;
 ///
 /// Two computations by different orders, tolerances and thresholds of contact, in
 /// double-double while their work, bounded, lasts and in doubles after it, are compared
-/// sample by sample. Equation: digits = `-log10(10 (difference + rounding)/scale)`, the
+/// sample by sample. Equation: digits = `-log10((10 difference + rounding)/scale)`, the
 /// difference being the largest so far, so that a chance agreement claims nothing.
 ///
 /// An impact on touching bodies that another order of the same impacts would have answered
@@ -43,8 +44,8 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     let mut recording = Recording::at_start(VOICE, scene);
     let mut states = initial_states(scene);
     let mut others = states.clone();
-    let mut claims = Claims::default();
-    let mut digits = vec![claims.digits(&states, &states)];
+    let mut parting = Parting::default();
+    let mut partings = vec![parting];
     let mut sample = 1;
     while sample <= scene.sample_count() {
         let events = published.is_wide().then(|| recording.events.clone());
@@ -74,13 +75,16 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             published.double.settle_sooner(from);
             witness = None;
         }
-        match &witness {
-            Some(witness) if halted.flatten().is_none() => witness.state_into(&mut others),
-            Some(_) | None => claims.withdraw(),
-        }
+        parting = match &witness {
+            Some(witness) if halted.flatten().is_none() => {
+                witness.state_into(&mut others);
+                parting.with(&states, &others)
+            }
+            Some(_) | None => Parting::unknown(),
+        };
         recording.push(&states);
         recording.events.end_interval();
-        digits.push(claims.digits(&states, &others));
+        partings.push(parting);
         sample += 1;
     }
     recording.work = published.work();
@@ -92,9 +96,12 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         }),
         None => None,
     };
+    let scale = Scale::of(&recording);
+    let digits =
+        |parting: &Parting| scale.digits(SAFETY * parting.position, SAFETY * parting.velocity);
     Ok(Certified {
+        digits: partings.iter().map(digits).collect(),
         recording,
-        digits,
         undetermined,
     })
 }
@@ -212,41 +219,29 @@ impl Voice {
     }
 }
 
-/// What has been seen of two computations so far.
-#[derive(Debug, Default)]
-struct Claims {
-    /// Corners of the box of all positions.
-    corners: Option<(Vector3, Vector3)>,
-    fastest: f64,
+/// How far two computations have parted so far, over all bodies.
+#[derive(Debug, Clone, Copy, Default)]
+struct Parting {
     position: f64,
     velocity: f64,
 }
 
-impl Claims {
-    /// Claims nothing from here on.
-    fn withdraw(&mut self) {
-        self.position = f64::INFINITY;
-        self.velocity = f64::INFINITY;
+impl Parting {
+    /// Nothing is known any more.
+    fn unknown() -> Self {
+        Self {
+            position: f64::INFINITY,
+            velocity: f64::INFINITY,
+        }
     }
 
-    /// Takes the next sample of both; gives the digits of the first.
-    fn digits(&mut self, states: &[BodyState], others: &[BodyState]) -> Digits {
-        let mut farthest = 0.0_f64;
+    /// With the next sample of both.
+    fn with(mut self, states: &[BodyState], others: &[BodyState]) -> Self {
         for (state, other) in states.iter().zip(others) {
-            let (x, v) = (&state.position, &state.velocity);
-            let (low, high) = self.corners.unwrap_or((*x, *x));
-            self.corners = Some((low.inf(x), high.sup(x)));
-            farthest = farthest.max(x.norm());
-            self.fastest = self.fastest.max(v.norm());
-            self.position = larger(self.position, (x - other.position).norm());
-            self.velocity = larger(self.velocity, (v - other.velocity).norm());
+            self.position = larger(self.position, (state.position - other.position).norm());
+            self.velocity = larger(self.velocity, (state.velocity - other.velocity).norm());
         }
-        let size = self.corners.map_or(0.0, |(low, high)| (high - low).norm());
-        let rounding = f64::EPSILON / 2.0;
-        Digits {
-            position: digits_of(self.position + rounding * farthest, size),
-            velocity: digits_of(self.velocity + rounding * self.fastest, self.fastest),
-        }
+        self
     }
 }
 
@@ -256,19 +251,4 @@ fn larger(one: f64, other: f64) -> f64 {
         return f64::INFINITY;
     }
     one.max(other)
-}
-
-/// Digits that an error leaves of a scale; 0 where nothing moves, as nothing is known then.
-fn digits_of(error: f64, scale: f64) -> u8 {
-    let digits = -(SAFETY * error / scale).log10();
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to 0..17"
-    )]
-    if digits.is_finite() {
-        digits.clamp(0.0, 15.0) as u8
-    } else {
-        0
-    }
 }
