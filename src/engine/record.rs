@@ -34,9 +34,7 @@ pub fn drive(scene: &Scene, voice: &str, simulation: &mut dyn Simulation) -> Rec
     for sample in 1..=scene.sample_count() {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
         simulation.state_into(&mut states);
-        let lost = states.iter().position(|state| !state.is_finite());
-        let time = scene.sample_time(sample);
-        let blown_up = lost.map(|body| Outcome::NonFinite { time, body });
+        let blown_up = Outcome::blown_up(&states, scene.sample_time(sample));
         if let Some(outcome) = halt.or(blown_up) {
             recording.outcome = outcome;
             recording

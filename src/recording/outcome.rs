@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::physics::BodyState;
 use crate::scene::Scene;
 
 /// How a simulation ended. A blow-up is a result, not an error.
@@ -43,6 +44,13 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// The end of a recording at a sample with states that are no longer finite, if any is.
+    #[must_use]
+    pub fn blown_up(states: &[BodyState], time: f64) -> Option<Self> {
+        let lost = states.iter().position(|state| !state.is_finite());
+        lost.map(|body| Self::NonFinite { time, body })
+    }
+
     /// Whether the whole duration was simulated.
     #[must_use]
     pub fn is_finished(&self) -> bool {

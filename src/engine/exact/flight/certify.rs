@@ -9,7 +9,7 @@ use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::real::Real;
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
-use crate::recording::{Digits, Recording, Undetermined, initial_states};
+use crate::recording::{Digits, Outcome, Recording, Undetermined, initial_states};
 use crate::scene::Scene;
 
 /// Inputs are moved by this share to see how errors grow: thousands of roundings.
@@ -45,11 +45,16 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     let mut states = initial_states(scene);
     let mut growth = vec![Parting::default()];
     for sample in 1..=scene.sample_count() {
-        if let Some(outcome) = run.advance_to(sample, Some(&mut recording.events)) {
+        let halt = run.advance_to(sample, Some(&mut recording.events));
+        run.state_into(&mut states);
+        let blown_up = Outcome::blown_up(&states, scene.sample_time(sample));
+        if let Some(outcome) = halt.or(blown_up) {
             recording.outcome = outcome;
+            recording
+                .events
+                .truncate_after(scene.sample_time(sample - 1));
             break;
         }
-        run.state_into(&mut states);
         recording.push(&states);
         recording.events.end_interval();
         let mut parting = Parting::default();

@@ -85,6 +85,11 @@ impl<R: Real> Law<R> {
         }
     }
 
+    /// Whether impacts of pairs are searched for, having no closed form.
+    pub fn is_searched(&self) -> bool {
+        matches!(self, Self::Mixed { .. })
+    }
+
     /// The state so much time later; earlier where it is negative.
     #[inline]
     pub fn after(&self, state: &State<R>, rate: R, time: R) -> State<R> {

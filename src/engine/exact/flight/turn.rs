@@ -13,8 +13,11 @@ const CROSSINGS_A_BODY: u64 = 20;
 /// Operations to take an event and plan what comes next, the pairs aside.
 const OPERATIONS_A_TURN: f64 = 200.0;
 
-/// Operations to foresee the impact of a pair.
+/// Operations to foresee the impact of a pair by a closed form.
 const OPERATIONS_A_PAIR: f64 = 30.0;
+
+/// The same by a search of some ten steps.
+const OPERATIONS_A_SEARCH: f64 = 1000.0;
 
 /// At most so many instants with simultaneous events are remembered, from the first on.
 const SIMULTANEOUS_KEPT: usize = 64;
@@ -53,7 +56,12 @@ impl<R: Real> FlightSimulation<R> {
     #[inline]
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     fn count(&mut self, looked_at: u64) {
-        let operations = OPERATIONS_A_TURN + OPERATIONS_A_PAIR * looked_at as f64;
+        let a_pair = if self.world.model.law.is_searched() {
+            OPERATIONS_A_SEARCH
+        } else {
+            OPERATIONS_A_PAIR
+        };
+        let operations = OPERATIONS_A_TURN + a_pair * looked_at as f64;
         self.effort.add::<R>(operations);
     }
 

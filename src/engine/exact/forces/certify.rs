@@ -43,6 +43,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     let mut witness = Some(Voice::new(scene, again, operations)?);
     let mut recording = Recording::at_start(VOICE, scene);
     let mut states = initial_states(scene);
+    let mut next = states.clone();
     let mut others = states.clone();
     let mut parting = Parting::default();
     let mut partings = vec![parting];
@@ -62,14 +63,16 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             }
             continue;
         }
-        if let Some(outcome) = halt {
+        published.state_into(&mut next);
+        let blown_up = Outcome::blown_up(&next, scene.sample_time(sample));
+        if let Some(outcome) = halt.or(blown_up) {
             recording.outcome = outcome;
             recording
                 .events
                 .truncate_after(scene.sample_time(sample - 1));
             break;
         }
-        published.state_into(&mut states);
+        states.clone_from(&next);
         if let Some(from) = published.unsettled() {
             published.narrow(scene, sample, &states);
             published.double.settle_sooner(from);

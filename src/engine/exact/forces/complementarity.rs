@@ -103,6 +103,10 @@ impl Active<'_> {
                 *wanted <= 0.0 && self.forces[*index] <= 1e-15 * wanted.abs()
             };
             let pulls: Vec<bool> = self.pressed.iter().zip(&wanted).map(pulls).collect();
+            if !pulls.contains(&true) {
+                // Numbers beyond those of doubles: no answer comes of going on.
+                return Err(self.pressed[0]);
+            }
             self.let_go(&pulls)?;
         }
     }
