@@ -12,7 +12,7 @@ pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
 pub use events_csv::{read_events, write_events};
 pub use number::finite_or_blank;
-pub use outcome::Outcome;
+pub use outcome::{CollapseReason, Outcome};
 pub use trajectory_csv::{read_trajectory, write_trajectory};
 
 use serde::Serialize;

@@ -32,15 +32,36 @@ pub enum Outcome {
         /// Time up to which it was computed, s.
         time: f64,
     },
-    /// Impacts followed each other without end.
+    /// Bodies came together so that there was no going on.
     Collapsed {
-        /// Time at which they ran away, s.
+        /// Time, s.
         time: f64,
-        /// The first body of the impact there.
+        /// The first of the bodies.
         a: usize,
-        /// The second body; none if it was a wall.
+        /// The second; none if it was a wall.
         b: Option<usize>,
+        /// Why there was no going on.
+        reason: CollapseReason,
     },
+}
+
+/// Why bodies that came together could not go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CollapseReason {
+    /// Impacts followed each other without end.
+    EndlessImpacts,
+    /// They fell into one point, where the force has no bound or no direction.
+    Singularity,
+}
+
+impl fmt::Display for CollapseReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::EndlessImpacts => "impacts ran away",
+            Self::Singularity => "bodies fell into one point",
+        })
+    }
 }
 
 impl Outcome {
@@ -85,8 +106,8 @@ impl Outcome {
             Self::BudgetSpent { time } => {
                 format!("the work allowed was spent at t = {time} s; the recording ends there")
             }
-            Self::Collapsed { time, a, b } => format!(
-                "impacts ran away at t = {time} s (`{}` and {}); the recording ends before it",
+            Self::Collapsed { time, a, b, reason } => format!(
+                "{reason} at t = {time} s (`{}` and {}); the recording ends before it",
                 scene.bodies[*a].name,
                 b.map_or("a wall".to_owned(), |b| format!(
                     "`{}`",

@@ -7,7 +7,7 @@ use carom::engine::exact::TieOrder;
 use carom::engine::exact::flight::{FlightSimulation, certified};
 use carom::engine::exact::{Certified, Real, Wide};
 use carom::physics::Vector3;
-use carom::recording::{EventKind, Outcome, Recording};
+use carom::recording::{CollapseReason, EventKind, Outcome, Recording};
 use carom::scene::{Contact, Cushions, Effects, Gravity, Rest, Scene};
 
 use crate::scenes::{body, scene};
@@ -227,6 +227,7 @@ fn a_ball_that_bounces_to_rest_ends_the_run_with_its_time() {
             time,
             a: 0,
             b: None,
+            reason: CollapseReason::EndlessImpacts,
         } = recording.outcome
         else {
             panic!("{:?}", recording.outcome);

@@ -26,6 +26,10 @@ impl Effort {
         self.done += operations * T::COST;
     }
 
+    pub(super) fn done(&self) -> f64 {
+        self.done
+    }
+
     #[inline]
     pub(super) fn is_spent(&self) -> bool {
         self.done > self.limit

@@ -5,7 +5,7 @@ use super::simulation::{FlightSimulation, Simultaneous};
 use super::world::Impact;
 use crate::engine::exact::order::INTERNAL;
 use crate::engine::exact::real::Real;
-use crate::recording::{Event, EventKind, EventLog, Outcome};
+use crate::recording::{CollapseReason, Event, EventKind, EventLog, Outcome};
 
 /// Changes of cell, a body, without any event between them that are worth their while.
 const CROSSINGS_A_BODY: u64 = 20;
@@ -215,6 +215,7 @@ impl<R: Real> FlightSimulation<R> {
             time: self.world.now.to_f64(),
             a,
             b,
+            reason: CollapseReason::EndlessImpacts,
         }
     }
 

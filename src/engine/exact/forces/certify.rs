@@ -9,7 +9,9 @@ use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
-use crate::recording::{self, EventLog, Outcome, Recording, Work, initial_states};
+use crate::recording::{
+    self, COMPARABLE_DIGITS, EventLog, Outcome, Recording, Work, initial_states,
+};
 use crate::scene::Scene;
 
 /// The name of the voice in recordings.
@@ -17,7 +19,10 @@ const VOICE: &str = "exact";
 
 /// Operations in double-double after which a scene goes on in doubles: a second or two. Larger
 /// clusters get there; the digits then say what doubles can vouch for.
-const WIDE_OPERATIONS: u64 = 2_000_000_000;
+const WIDE_OPERATIONS: u64 = 1_000_000_000;
+
+/// Operations in doubles after which an undetermined cluster is no longer certified.
+const SETTLING_OPERATIONS: f64 = 1e9;
 
 /// The true error may be larger than the difference of two computations that err; by how much
 /// a claim allows for.
@@ -30,9 +35,10 @@ const SAFETY: f64 = 10.0;
 /// sample by sample. Equation: digits = `-log10((10 difference + rounding)/scale)`, the
 /// difference being the largest so far, so that a chance agreement claims nothing.
 ///
-/// An impact on touching bodies that another order of the same impacts would have answered
-/// otherwise ends the certainty: from there on one of the answers is computed, with no digits.
-/// Where the model is undetermined, another order is computed too, for the spread.
+/// What is certified is the answer by the model's rule. Where another order of simultaneous
+/// impacts would have answered otherwise that order is computed too, for the spread. A cluster
+/// in which that happened and whose two computations have parted goes on alone, in doubles and
+/// with shorter bounces, as nothing of it is claimed.
 /// Units: `operations` bounds each computation, in elementary operations.
 ///
 /// # Errors
@@ -73,11 +79,6 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             break;
         }
         states.clone_from(&next);
-        if let Some(from) = published.unsettled() {
-            published.narrow(scene, sample, &states);
-            published.double.settle_sooner(from);
-            witness = None;
-        }
         parting = match &witness {
             Some(witness) if halted.flatten().is_none() => {
                 witness.state_into(&mut others);
@@ -88,6 +89,14 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         recording.push(&states);
         recording.events.end_interval();
         partings.push(parting);
+        if witness.is_some()
+            && published.is_unsettled()
+            && (parting.is_lost(&recording) || published.is_costly())
+        {
+            published.narrow(scene, sample, &states);
+            published.double.settle_sooner();
+            witness = None;
+        }
         sample += 1;
     }
     recording.work = published.work();
@@ -149,16 +158,20 @@ struct Voice {
     /// What the wide one did, once it is gone.
     before: Work,
     undetermined: Option<Undetermined>,
+    unsettled: bool,
 }
 
 impl Voice {
     fn new(scene: &Scene, [wide, double]: [Accuracy; 2], operations: u64) -> Result<Self> {
         let limit = WIDE_OPERATIONS.min(operations);
         Ok(Self {
-            wide: Some(ForcesSimulation::new(scene, wide)?.limited(limit)),
-            double: ForcesSimulation::new(scene, double)?.limited(operations),
+            wide: Some(ForcesSimulation::new(scene, wide)?.limited(limit).patient()),
+            double: ForcesSimulation::new(scene, double)?
+                .limited(operations)
+                .patient(),
             before: Work::default(),
             undetermined: None,
+            unsettled: false,
         })
     }
 
@@ -193,13 +206,17 @@ impl Voice {
         self.undetermined.or(now)
     }
 
-    /// The impact that ends the certainty, once: it is none of the computation in doubles that
-    /// goes on from there.
-    fn unsettled(&self) -> Option<Undetermined> {
+    /// Whether a cluster had no single answer.
+    fn is_unsettled(&self) -> bool {
         match &self.wide {
-            Some(wide) => wide.unsettled(),
-            None => self.double.unsettled(),
+            Some(wide) => wide.is_unsettled(),
+            None => self.unsettled || self.double.is_unsettled(),
         }
+    }
+
+    /// Whether it has taken the work that certainty about an undetermined cluster is worth.
+    fn is_costly(&self) -> bool {
+        self.wide.is_none() && self.double.operations() > SETTLING_OPERATIONS
     }
 
     /// Goes on in doubles from these states, if it has not yet.
@@ -207,6 +224,7 @@ impl Voice {
         if let Some(wide) = self.wide.take() {
             let kept = |from: &Undetermined| from.time <= scene.sample_time(sample);
             self.undetermined = wide.undetermined().filter(kept);
+            self.unsettled = wide.is_unsettled();
             self.before = wide.work();
             self.double.set_state(sample, states);
         }
@@ -236,6 +254,12 @@ impl Parting {
             position: f64::INFINITY,
             velocity: f64::INFINITY,
         }
+    }
+
+    /// Whether too few digits are left to compare positions.
+    fn is_lost(self, recording: &Recording) -> bool {
+        let digits = Scale::of(recording).digits(SAFETY * self.position, 0.0);
+        digits.position < COMPARABLE_DIGITS
     }
 
     /// With the next sample of both.

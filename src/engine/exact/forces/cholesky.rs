@@ -15,16 +15,18 @@ impl<T: Real> Cholesky<T> {
         Self { rows: Vec::new() }
     }
 
-    /// Factors the matrix `entry(i, j)`, of which it reads `j <= i`.
-    ///
-    /// # Errors
-    /// The first row that depends on the rows before it.
-    pub(super) fn of(size: usize, entry: impl Fn(usize, usize) -> T) -> Result<Self, usize> {
+    /// Factors the matrix `entry(i, j)`, of which it reads `j <= i`, without the rows that
+    /// depend on rows before them; with the rows that it kept.
+    pub(super) fn of(size: usize, entry: impl Fn(usize, usize) -> T) -> (Self, Vec<usize>) {
         let mut factor = Self::empty();
+        let mut kept = Vec::with_capacity(size);
         for i in 0..size {
-            factor.grow(|j| entry(i, j)).map_err(|()| i)?;
+            let own = |j: usize| entry(i, *kept.get(j).unwrap_or(&i));
+            if factor.grow(own).is_ok() {
+                kept.push(i);
+            }
         }
-        Ok(factor)
+        (factor, kept)
     }
 
     /// Adds a row and its column; the order of `size` squared. Reads `entry(j)` up to the
@@ -82,17 +84,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn solves_and_names_a_dependent_row() {
+    fn solves_and_leaves_out_a_dependent_row() {
         let a: [[f64; 2]; 2] = [[4.0, 2.0], [2.0, 3.0]];
-        let factor = Cholesky::of(2, |i, j| a[i][j]).unwrap();
+        let (factor, kept) = Cholesky::of(2, |i, j| a[i][j]);
+        assert_eq!(kept, [0, 1]);
         let mut x = [8.0, 8.0];
         factor.solve(&mut x);
         assert!((x[0] - 1.0).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15);
-        let mut grown = Cholesky::of(2, |i, j| a[i][j]).unwrap();
+        let (mut grown, _) = Cholesky::of(2, |i, j| a[i][j]);
         grown.truncate(1);
         grown.grow(|j| a[1][j]).unwrap();
         assert_eq!(grown.rows, factor.rows);
-        let dependent: [[f64; 2]; 2] = [[4.0, 2.0], [2.0, 1.0]];
-        assert_eq!(Cholesky::of(2, |i, j| dependent[i][j]).unwrap_err(), 1);
+        let dependent = [[4.0, 2.0, 2.0], [2.0, 1.0, 1.0], [2.0, 1.0, 3.0]];
+        let (factor, kept) = Cholesky::of(3, |i, j| dependent[i][j]);
+        assert_eq!(kept, [0, 2]);
+        let mut x = [6.0, 5.0];
+        factor.solve(&mut x);
+        assert!((x[0] - 1.0).abs() < 1e-15 && (x[1] - 1.0).abs() < 1e-15);
     }
 }

@@ -2,6 +2,21 @@
 
 use super::cholesky::Cholesky;
 
+/// Below this share of the largest rate, a rate is that of a contact that stays closed.
+const CLOSED: f64 = 1e-9;
+
+/// What becomes of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It opens, or could do so.
+    Free,
+    /// It presses.
+    Pressed,
+    /// The pressing ones keep it closed: its direction depends on theirs, so that which of them
+    /// bear the load is not determined, but the motion is.
+    Redundant,
+}
+
 /// Finds the pressing ones: forces `f >= 0`, rates `A f + b >= 0`, one of the two zero for each.
 ///
 /// `matrix(i, j)` symmetric and positive semi-definite. `warm` is a guess of the answer. It is
@@ -9,14 +24,11 @@ use super::cholesky::Cholesky;
 /// non-negative least squares: finite, since each round lowers the minimum. A contact that joins
 /// costs the square of their number, one that leaves at most the cube.
 /// Source: Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23.
-///
-/// # Errors
-/// The index of a contact that would have to press and depends on those that do.
 pub(super) fn pressing(
     matrix: &dyn Fn(usize, usize) -> f64,
     rates: &[f64],
     warm: &[bool],
-) -> Result<Vec<bool>, usize> {
+) -> Vec<Role> {
     let count = rates.len();
     let scale = rates
         .iter()
@@ -31,25 +43,40 @@ pub(super) fn pressing(
     };
     for index in (0..count).filter(|index| warm[*index]) {
         // One that depends on the others is no loss to a guess.
-        active.add(index).ok();
+        active.add(index);
     }
+    let mut dependent = vec![false; count];
     // The method is finite; the bound only guards against rounding that makes it cycle.
     for _ in 0..20 * count + 20 {
-        active.relax()?;
-        let free = (0..count).filter(|i| !active.pressed.contains(i));
-        let worst = free
+        active.relax();
+        let free = |i: &usize| !dependent[*i] && !active.pressed.contains(i);
+        let worst = (0..count)
+            .filter(free)
             .map(|i| (i, active.rate(i)))
             .min_by(|one, other| one.1.total_cmp(&other.1));
         match worst {
-            Some((index, rate)) if rate < -tolerance => active.add(index)?,
+            Some((index, rate)) if rate < -tolerance => {
+                dependent[index] = !active.add(index);
+            }
             Some(_) | None => break,
         }
     }
-    let mut answer = vec![false; count];
-    for index in active.pressed {
-        answer[index] = active.forces[index] > 0.0;
-    }
-    Ok(answer)
+    let idle: Vec<bool> = active
+        .pressed
+        .iter()
+        .map(|i| active.forces[*i] <= 0.0)
+        .collect();
+    active.let_go(&idle);
+    let role = |index: usize| {
+        if active.pressed.contains(&index) {
+            Role::Pressed
+        } else if active.rate(index) > CLOSED * scale || active.is_independent(index) {
+            Role::Free
+        } else {
+            Role::Redundant
+        }
+    };
+    (0..count).map(role).collect()
 }
 
 /// The contacts taken to press, with the factor of their matrix.
@@ -62,12 +89,24 @@ struct Active<'a> {
 }
 
 impl Active<'_> {
-    fn add(&mut self, index: usize) -> Result<(), usize> {
+    /// Takes it to press; whether it is independent of the others, else it is not taken.
+    fn add(&mut self, index: usize) -> bool {
         let (matrix, pressed) = (self.matrix, &self.pressed);
         let entry = |j: usize| matrix(index, *pressed.get(j).unwrap_or(&index));
-        self.factor.grow(entry).map_err(|()| index)?;
-        self.pressed.push(index);
-        Ok(())
+        let grown = self.factor.grow(entry).is_ok();
+        if grown {
+            self.pressed.push(index);
+        }
+        grown
+    }
+
+    fn is_independent(&mut self, index: usize) -> bool {
+        let independent = self.add(index);
+        if independent {
+            self.pressed.pop();
+            self.factor.truncate(self.pressed.len());
+        }
+        independent
     }
 
     /// Rate of a contact under the present forces.
@@ -80,51 +119,43 @@ impl Active<'_> {
     }
 
     /// Forces that stop the pressed ones; those that would have to pull are let go, one by one.
-    fn relax(&mut self) -> Result<(), usize> {
+    fn relax(&mut self) {
         loop {
             let mut wanted: Vec<f64> = self.pressed.iter().map(|i| -self.rates[*i]).collect();
             self.factor.solve(&mut wanted);
-            // How far towards the wanted forces before the first of them vanishes.
-            let mut share = 1.0_f64;
-            for (index, wanted) in self.pressed.iter().zip(&wanted) {
-                if *wanted <= 0.0 {
-                    let now = self.forces[*index];
-                    share = share.min(if now > 0.0 { now / (now - wanted) } else { 0.0 });
+            // How far towards the wanted forces before each of them vanishes.
+            let before_zero = |(index, wanted): (&usize, &f64)| {
+                let now = self.forces[*index];
+                match (*wanted <= 0.0, now > 0.0) {
+                    (true, true) => now / (now - wanted),
+                    (true, false) => 0.0,
+                    (false, _) => f64::INFINITY,
                 }
-            }
-            let complete = wanted.iter().all(|wanted| *wanted > 0.0);
-            for (index, wanted) in self.pressed.iter().zip(&wanted) {
-                self.forces[*index] += share * (wanted - self.forces[*index]);
-            }
-            if complete {
-                return Ok(());
-            }
-            let pulls = |(index, wanted): (&usize, &f64)| {
-                *wanted <= 0.0 && self.forces[*index] <= 1e-15 * wanted.abs()
             };
-            let pulls: Vec<bool> = self.pressed.iter().zip(&wanted).map(pulls).collect();
-            if !pulls.contains(&true) {
-                // Numbers beyond those of doubles: no answer comes of going on.
-                return Err(self.pressed[0]);
+            let shares: Vec<f64> = self.pressed.iter().zip(&wanted).map(before_zero).collect();
+            let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
+            for (index, wanted) in self.pressed.iter().zip(&wanted) {
+                self.forces[*index] += least.min(1.0) * (wanted - self.forces[*index]);
             }
-            self.let_go(&pulls)?;
+            if least > 1.0 {
+                return;
+            }
+            let pulls: Vec<bool> = shares.iter().map(|share| *share <= least).collect();
+            self.let_go(&pulls);
         }
     }
 
     /// Takes out the marked ones.
-    fn let_go(&mut self, marked: &[bool]) -> Result<(), usize> {
+    fn let_go(&mut self, marked: &[bool]) {
         let first = marked.iter().position(|marked| *marked);
         let first = first.unwrap_or(self.pressed.len());
         self.factor.truncate(first);
         let later = self.pressed.split_off(first);
         for (index, marked) in later.into_iter().zip(&marked[first..]) {
-            if *marked {
+            if *marked || !self.add(index) {
                 self.forces[index] = 0.0;
-            } else {
-                self.add(index)?;
             }
         }
-        Ok(())
     }
 }
 
@@ -136,17 +167,31 @@ mod tests {
     fn a_contact_that_would_pull_is_let_go() {
         let a = [[2.0, -1.0], [-1.0, 2.0]];
         let matrix = |i: usize, j: usize| a[i][j];
-        assert_eq!(
-            pressing(&matrix, &[-1.0, 3.0], &[true, true]),
-            Ok(vec![true, false])
-        );
-        assert_eq!(
-            pressing(&matrix, &[-1.0, 0.4], &[false, false]),
-            Ok(vec![true, true])
-        );
-        assert_eq!(
-            pressing(&matrix, &[1.0, 1.0], &[true, false]),
-            Ok(vec![false, false])
-        );
+        let (free, pressed) = (Role::Free, Role::Pressed);
+        for (rates, warm, roles) in [
+            ([-1.0, 3.0], [true, true], [pressed, free]),
+            ([-1.0, 0.4], [false, false], [pressed, pressed]),
+            ([1.0, 1.0], [true, false], [free, free]),
+        ] {
+            assert_eq!(pressing(&matrix, &rates, &warm), roles.to_vec());
+        }
+    }
+
+    /// A table on four legs: two or three bear it, and the others are closed by them.
+    #[test]
+    fn what_the_others_keep_closed_is_redundant() {
+        let legs: [[f64; 3]; 4] = [
+            [1.0, 1.0, 1.0],
+            [1.0, -1.0, 1.0],
+            [1.0, -1.0, -1.0],
+            [1.0, 1.0, -1.0],
+        ];
+        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+        let matrix = |i: usize, j: usize| product(legs[i], legs[j]);
+        for warm in [[false; 4], [true; 4]] {
+            let roles = pressing(&matrix, &[-1.0; 4], &warm);
+            let pressed = roles.iter().filter(|role| **role == Role::Pressed).count();
+            assert!((2..4).contains(&pressed), "{roles:?}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What happens at one instant: impacts in the model's order, what sticks, what presses.
 
 use super::cholesky::Cholesky;
-use super::complementarity::pressing;
+use super::complementarity::{Role, pressing};
 use super::held::OPERATIONS_AN_ENTRY;
 use super::law::Law;
 use super::scalar::{Real, Triple, dot, minus, size};
@@ -39,6 +39,8 @@ pub(super) struct Aftermath {
     pub(super) impacts: Vec<Impact>,
     /// Contacts that press from here on.
     pub(super) held: Vec<Touch>,
+    /// Contacts that those keep closed.
+    pub(super) idle: Vec<Touch>,
     /// Closed gaps that open.
     pub(super) fresh: Vec<Fresh>,
     /// Whether another order of the impacts would have given another answer.
@@ -86,10 +88,7 @@ impl<T: Real> Meeting<T> {
 
 impl<T: Real> Instant<'_, T> {
     /// Changes the velocities by every impact of this instant.
-    ///
-    /// # Errors
-    /// A touch whose force is not unique, in a cluster with more contacts than freedom.
-    pub(super) fn resolve(&self, velocity: &mut [Triple<T>]) -> Result<Aftermath, Touch> {
+    pub(super) fn resolve(&self, velocity: &mut [Triple<T>]) -> Aftermath {
         let meetings = self.meetings(velocity);
         let fastest = velocity.iter().map(size).fold(0.0, f64::max);
         let noise = 64.0 * T::ROUNDING * fastest;
@@ -116,9 +115,9 @@ impl<T: Real> Instant<'_, T> {
             + OPERATIONS_A_PAIR * bodies * bodies;
         for _ in 0..ROUNDS_MAX {
             aftermath.operations += count * count * (count + 4.0 * OPERATIONS_AN_ENTRY);
-            self.stick(&meetings, noise, velocity, &mut aftermath)?;
-            self.press(&meetings, noise, velocity, &mut aftermath)?;
-            let moved = self.stop(&meetings, noise, velocity, &aftermath.held)?;
+            self.stick(&meetings, noise, velocity, &mut aftermath);
+            self.press(&meetings, noise, velocity, &mut aftermath);
+            let moved = self.stop(&meetings, noise, velocity, &aftermath.held);
             let approaches = |meeting: &Meeting<T>| {
                 meeting.arms.rate(velocity).to_f64() < -noise * meeting.reach.to_f64()
             };
@@ -126,7 +125,7 @@ impl<T: Real> Instant<'_, T> {
                 break;
             }
         }
-        Ok(aftermath)
+        aftermath
     }
 
     /// Takes the speed of bounces that are none out of the pressing contacts, all together;
@@ -137,25 +136,28 @@ impl<T: Real> Instant<'_, T> {
         noise: f64,
         velocity: &mut [Triple<T>],
         held: &[Touch],
-    ) -> Result<bool, Touch> {
+    ) -> bool {
         let held: Vec<&Meeting<T>> = meetings
             .iter()
             .filter(|meeting| held.contains(&meeting.touch))
             .collect();
-        let mut pushes: Vec<T> = held.iter().map(|m| -m.arms.rate(velocity)).collect();
+        let pushes: Vec<T> = held.iter().map(|m| -m.arms.rate(velocity)).collect();
         let mut speeds = held.iter().zip(&pushes);
         if speeds.all(|(m, push)| push.to_f64().abs() <= noise * m.reach.to_f64()) {
-            return Ok(false);
+            return false;
         }
         let entry = |i: usize, j: usize| {
             contact_matrix(&self.law.inverse_mass, &held[i].arms, &held[j].arms)
         };
-        let factor = Cholesky::of(held.len(), entry).map_err(|row| held[row].touch)?;
+        let (factor, kept) = Cholesky::of(held.len(), entry);
+        let mut pushes: Vec<T> = kept.iter().map(|index| pushes[*index]).collect();
         factor.solve(&mut pushes);
-        for (meeting, push) in held.iter().zip(pushes) {
-            meeting.arms.push(push, &self.law.inverse_mass, velocity);
+        for (index, push) in kept.into_iter().zip(pushes) {
+            held[index]
+                .arms
+                .push(push, &self.law.inverse_mass, velocity);
         }
-        Ok(true)
+        true
     }
 
     /// Everything that touches, in the order asked for.
@@ -251,7 +253,7 @@ impl<T: Real> Instant<'_, T> {
         noise: f64,
         velocity: &mut [Triple<T>],
         aftermath: &mut Aftermath,
-    ) -> Result<(), Touch> {
+    ) {
         let rates: Vec<T> = meetings.iter().map(|m| m.arms.rate(velocity)).collect();
         let resting =
             |index: &usize| rates[*index].to_f64() <= noise * meetings[*index].reach.to_f64();
@@ -263,8 +265,8 @@ impl<T: Real> Instant<'_, T> {
             .filter(resting)
             .map(|index| rates[index])
             .collect();
-        let (pressed, pushes) = self.complementary(&close, &rates)?;
-        for (meeting, push) in pressed.iter().zip(pushes) {
+        let pressing = self.complementary(&close, &rates);
+        for (meeting, push) in pressing.pressed.iter().zip(pressing.pushes) {
             let own = contact_matrix(&self.law.inverse_mass, &meeting.arms, &meeting.arms);
             meeting.arms.push(push, &self.law.inverse_mass, velocity);
             let speed = (push * own).to_f64() / meeting.reach.to_f64();
@@ -275,7 +277,6 @@ impl<T: Real> Instant<'_, T> {
                 });
             }
         }
-        Ok(())
     }
 
     /// Which of the closed gaps press from here on.
@@ -289,11 +290,12 @@ impl<T: Real> Instant<'_, T> {
         noise: f64,
         velocity: &[Triple<T>],
         aftermath: &mut Aftermath,
-    ) -> Result<(), Touch> {
+    ) {
         let applied = self.law.acceleration(self.position, velocity);
         let speed =
             |meeting: &Meeting<T>| meeting.arms.rate(velocity).to_f64() / meeting.reach.to_f64();
         aftermath.held.clear();
+        aftermath.idle.clear();
         aftermath.fresh.clear();
         let mut close = Vec::new();
         for meeting in meetings {
@@ -310,7 +312,11 @@ impl<T: Real> Instant<'_, T> {
             let closing =
                 |meeting: &&Meeting<T>| closing(&meeting.arms, meeting.touch, &applied, velocity);
             let rates: Vec<T> = close.iter().map(closing).collect();
-            let (pressed, pushes) = self.complementary(&close, &rates)?;
+            let Pressing {
+                pressed,
+                pushes,
+                redundant,
+            } = self.complementary(&close, &rates);
             let force = |touch: Touch| {
                 let mut pairs = pressed.iter().zip(&pushes);
                 pairs
@@ -339,22 +345,20 @@ impl<T: Real> Instant<'_, T> {
                 let touch = meeting.touch;
                 if force(touch).is_some() {
                     aftermath.held.push(touch);
+                } else if redundant.contains(&touch) {
+                    aftermath.idle.push(touch);
                 } else {
                     aftermath.fresh.push(Fresh { touch, skip: 2 });
                 }
             }
-            return Ok(());
+            return;
         }
     }
 
     /// The meetings that push, and by how much, so that no rate stays negative.
-    fn complementary<'m>(
-        &self,
-        close: &[&'m Meeting<T>],
-        rates: &[T],
-    ) -> Result<(Vec<&'m Meeting<T>>, Vec<T>), Touch> {
-        if rates.iter().all(|rate| *rate >= T::zero()) {
-            return Ok((Vec::new(), Vec::new()));
+    fn complementary<'m>(&self, close: &[&'m Meeting<T>], rates: &[T]) -> Pressing<'m, T> {
+        if rates.iter().all(|rate| *rate > T::zero()) {
+            return Pressing::default();
         }
         let entry = |i: usize, j: usize| {
             contact_matrix(&self.law.inverse_mass, &close[i].arms, &close[j].arms)
@@ -365,17 +369,39 @@ impl<T: Real> Instant<'_, T> {
             .collect();
         let doubles: Vec<f64> = rates.iter().map(|rate| rate.to_f64()).collect();
         let warm: Vec<bool> = close.iter().map(|m| self.held.contains(&m.touch)).collect();
-        let answer = pressing(&|i, j| matrix[i * count + j], &doubles, &warm)
-            .map_err(|row| close[row].touch)?;
-        let pressed: Vec<usize> = (0..count).filter(|index| answer[*index]).collect();
-        let factor = Cholesky::of(pressed.len(), |i, j| entry(pressed[i], pressed[j]))
-            .map_err(|row| close[pressed[row]].touch)?;
+        let roles = pressing(&|i, j| matrix[i * count + j], &doubles, &warm);
+        let answer: Vec<usize> = (0..count)
+            .filter(|index| roles[*index] == Role::Pressed)
+            .collect();
+        let (factor, kept) = Cholesky::of(answer.len(), |i, j| entry(answer[i], answer[j]));
+        let pressed: Vec<usize> = kept.into_iter().map(|place| answer[place]).collect();
         let mut pushes: Vec<T> = pressed.iter().map(|index| -rates[*index]).collect();
         factor.solve(&mut pushes);
-        Ok((
-            pressed.into_iter().map(|index| close[index]).collect(),
+        let is_redundant = |index: &usize| roles[*index] != Role::Free && !pressed.contains(index);
+        let redundant = (0..count).filter(is_redundant);
+        Pressing {
+            redundant: redundant.map(|index| close[index].touch).collect(),
+            pressed: pressed.iter().map(|index| close[*index]).collect(),
             pushes,
-        ))
+        }
+    }
+}
+
+/// The answer of a complementarity problem.
+struct Pressing<'m, T> {
+    pressed: Vec<&'m Meeting<T>>,
+    /// Shape: as `pressed`.
+    pushes: Vec<T>,
+    redundant: Vec<Touch>,
+}
+
+impl<T> Default for Pressing<'_, T> {
+    fn default() -> Self {
+        Self {
+            pressed: Vec::new(),
+            pushes: Vec::new(),
+            redundant: Vec::new(),
+        }
     }
 }
 

@@ -33,11 +33,13 @@ pub(super) struct Fresh {
 }
 
 /// The first event on `0 <= u <= span`; counts the surfaces looked at.
+///
+/// `fresh` gaps are closed and open from here on, `idle` ones are kept closed by held contacts.
 pub(super) fn first_event<T: Real>(
     series: &Series<T>,
     surfaces: &Surfaces<T>,
     span: f64,
-    fresh: &[Fresh],
+    (fresh, idle): (&[Fresh], &[Touch]),
     looked_at: &mut u64,
 ) -> Option<Upcoming<T>> {
     let powers = powers(span, series.order());
@@ -54,6 +56,7 @@ pub(super) fn first_event<T: Real>(
         *looked_at += 1;
         if out_of_reach(series, surfaces, touch, &travel)
             || series.held.iter().any(|held| held.touch == touch)
+            || idle.contains(&touch)
         {
             continue;
         }

@@ -16,7 +16,7 @@ use crate::engine::exact::effort::Effort;
 use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::BodyState;
-use crate::recording::{Event, EventLog, Outcome, Work, initial_states};
+use crate::recording::{CollapseReason, Event, EventLog, Outcome, Work, initial_states};
 use crate::scene::Scene;
 
 /// Order that is tried after an event, before the full one.
@@ -51,6 +51,8 @@ pub struct ForcesSimulation<T: Real> {
     velocity: Vec<Exact<Triple<T>>>,
     /// Contacts that press.
     pub(super) held: Vec<Touch>,
+    /// Contacts that those keep closed.
+    pub(super) idle: Vec<Touch>,
     fresh: Vec<Fresh>,
     step: Option<Step<T>>,
     tau: f64,
@@ -59,7 +61,8 @@ pub struct ForcesSimulation<T: Real> {
     watchdog: Watchdog,
     outcome: Option<Outcome>,
     undetermined: Option<Undetermined>,
-    unsettled: Option<Undetermined>,
+    is_unsettled: bool,
+    is_patient: bool,
     work: Work,
     pub(super) effort: Effort,
 }
@@ -114,6 +117,7 @@ impl<T: Real> ForcesSimulation<T> {
             position: Vec::new(),
             velocity: Vec::new(),
             held: Vec::new(),
+            idle: Vec::new(),
             fresh: Vec::new(),
             step: None,
             tau: power_of_two(scene.sample_every),
@@ -121,7 +125,8 @@ impl<T: Real> ForcesSimulation<T> {
             watchdog: Watchdog::new(scene.duration),
             outcome: None,
             undetermined: None,
-            unsettled: None,
+            is_unsettled: false,
+            is_patient: false,
             work: Work::default(),
             effort: Effort::limited(u64::MAX),
         };
@@ -143,23 +148,34 @@ impl<T: Real> ForcesSimulation<T> {
         self
     }
 
+    /// Elementary operations done.
+    pub(super) fn operations(&self) -> f64 {
+        self.effort.done()
+    }
+
     /// Where the model ceased to have a single answer, if it did.
     #[must_use]
     pub fn undetermined(&self) -> Option<Undetermined> {
         self.undetermined
     }
 
-    /// Where an impact on a cluster of pressing contacts first had no single answer: from there
-    /// on the cluster cannot be certified, and bounces in it are ended sooner.
+    /// The same without ending bounces sooner where a cluster has no single answer, until
+    /// [told to](Self::settle_sooner).
     #[must_use]
-    pub fn unsettled(&self) -> Option<Undetermined> {
-        self.unsettled
+    pub fn patient(mut self) -> Self {
+        self.is_patient = true;
+        self
     }
 
-    /// Ends bounces in clusters sooner from here on, after an answer that was not the only one.
-    pub(super) fn settle_sooner(&mut self, since: Undetermined) {
-        self.undetermined.get_or_insert(since);
-        self.unsettled = Some(since);
+    /// Whether an impact on a cluster of pressing contacts had no single answer.
+    pub(super) fn is_unsettled(&self) -> bool {
+        self.is_unsettled
+    }
+
+    /// Ends bounces sooner from here on, as the answer is not the only one any more.
+    pub(super) fn settle_sooner(&mut self) {
+        self.is_patient = false;
+        self.is_unsettled = true;
     }
 
     /// Contacts that press at present.
@@ -169,10 +185,11 @@ impl<T: Real> ForcesSimulation<T> {
     }
 
     fn bounce_height(&self) -> f64 {
-        match self.unsettled {
-            Some(_) => UNDETERMINED_BOUNCE_HEIGHT.max(self.accuracy.bounce_height),
-            None => self.accuracy.bounce_height,
+        let least = self.accuracy.bounce_height;
+        if self.is_unsettled && !self.is_patient {
+            return least.max(UNDETERMINED_BOUNCE_HEIGHT);
         }
+        least
     }
 
     pub(super) fn positions(&self) -> Vec<Triple<T>> {
@@ -212,11 +229,12 @@ impl<T: Real> ForcesSimulation<T> {
         self.position = states.iter().map(|state| wide(&state.position)).collect();
         self.velocity = states.iter().map(|state| wide(&state.velocity)).collect();
         self.held.clear();
+        self.idle.clear();
         self.fresh.clear();
         self.step = None;
         self.outcome = None;
         self.undetermined = None;
-        self.unsettled = None;
+        self.is_unsettled = false;
         self.watchdog.restart(time);
     }
 
@@ -233,19 +251,16 @@ impl<T: Real> ForcesSimulation<T> {
             held: &self.held,
             trigger,
         };
-        let aftermath = match instant.resolve(&mut velocity) {
-            Ok(aftermath) => aftermath,
-            Err(touch) => return self.collapse(touch.bodies()),
-        };
-        self.set_velocities(&velocity);
         let Aftermath {
             impacts,
             held,
+            idle,
             fresh,
             undetermined,
             in_cluster,
             operations,
-        } = aftermath;
+        } = instant.resolve(&mut velocity);
+        self.set_velocities(&velocity);
         self.effort.add::<T>(operations);
         let time = self.time.sum.to_f64();
         if undetermined {
@@ -254,9 +269,7 @@ impl<T: Real> ForcesSimulation<T> {
             let bodies = touch.map_or([0, 0], Touch::bodies);
             let here = Undetermined { time, bodies };
             self.undetermined.get_or_insert(here);
-            if in_cluster {
-                self.unsettled.get_or_insert(here);
-            }
+            self.is_unsettled |= in_cluster;
         }
         if let Some(log) = log {
             for impact in impacts {
@@ -268,22 +281,22 @@ impl<T: Real> ForcesSimulation<T> {
             }
         }
         self.held = held;
+        self.idle = idle;
         self.fresh = fresh;
     }
 
-    pub(super) fn collapse(&mut self, [body_a, body_b]: [usize; 2]) {
+    pub(super) fn collapse(&mut self, [body_a, body_b]: [usize; 2], reason: CollapseReason) {
         self.outcome = Some(Outcome::Collapsed {
             time: self.time.sum.to_f64(),
             a: body_a,
             b: (body_b != body_a).then_some(body_b),
+            reason,
         });
     }
 
     /// Expands the motion from here and finds where the step ends.
     fn plan(&mut self) {
-        let Ok(factor) = self.close_held() else {
-            return;
-        };
+        let factor = self.close_held();
         let order = self.accuracy.order;
         for attempt in 0..TRIES_MAX {
             let mut series = self.series();
@@ -311,7 +324,7 @@ impl<T: Real> ForcesSimulation<T> {
             }
         }
         let bodies = self.closest();
-        self.collapse(bodies);
+        self.collapse(bodies, CollapseReason::Singularity);
     }
 
     /// The next event if it comes within what a series of few orders reaches, as bounces do that
@@ -328,7 +341,8 @@ impl<T: Real> ForcesSimulation<T> {
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     fn look(&mut self, series: &Series<T>, end: f64) -> Option<Upcoming<T>> {
         let mut looked_at = 0;
-        let event = first_event(series, &self.surfaces, end, &self.fresh, &mut looked_at);
+        let closed = (&*self.fresh, &*self.idle);
+        let event = first_event(series, &self.surfaces, end, closed, &mut looked_at);
         self.work.pair_tests += looked_at;
         self.effort.add::<f64>(OPERATIONS_A_LOOK * looked_at as f64);
         event
@@ -361,7 +375,7 @@ impl<T: Real> ForcesSimulation<T> {
         let time = self.time.sum.to_f64();
         if self.watchdog.is_vanishing::<T>(time, end * series.tau) {
             let bodies = self.closest();
-            return self.collapse(bodies);
+            return self.collapse(bodies, CollapseReason::Singularity);
         }
         self.tau = power_of_two(end * series.tau);
         self.work.steps += 1;
@@ -417,7 +431,7 @@ impl<T: Real> ForcesSimulation<T> {
             .event
             .map_or_else(|| self.closest(), |(touch, _)| touch.bodies());
         if self.outcome.is_none() && self.watchdog.runs_away(self.time.sum.to_f64(), progress) {
-            self.collapse(bodies);
+            self.collapse(bodies, CollapseReason::EndlessImpacts);
         }
     }
 
