@@ -6,13 +6,32 @@
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::physics::Vector3;
-use crate::recording::{Recording, read_events, read_trajectory};
+use crate::recording::{
+    Recording, Undetermined, read_events, read_trajectory, read_trajectory_start,
+};
 use crate::scene::{self, Scene};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
+
+/// The name of the voice of independent truth.
+pub const TRUTH: &str = "truth";
+
+/// The heading of `ORIGIN.md` where carom made the truth itself.
+pub const OWN_ORIGIN: &str = "# Origin of the truth: carom's own engine `exact`";
+
+/// Who made the truth of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evidence {
+    /// Closed forms or programs that share nothing with carom.
+    Independent,
+    /// The engine `exact`, as far as it certifies; it says nothing about that engine.
+    Own,
+}
 
 /// More names than this are no hint any more.
 const HINTS_MAX: usize = 6;
@@ -25,8 +44,10 @@ pub const REFERENCE: &str = "reference";
 pub struct Case {
     /// The scene.
     pub scene: Scene,
-    /// Independent evidence, a recording with the voice `truth`.
+    /// A recording with the voice `truth`.
     pub truth: Option<Recording>,
+    /// Who made it.
+    pub evidence: Option<Evidence>,
     /// Where the evidence comes from.
     pub origin: Option<String>,
 }
@@ -92,26 +113,41 @@ impl Library {
             let scene = scene.name;
             return Err(Error::CaseName { file, scene });
         }
-        let mut truth = None;
-        if let Some(table) = self.file(name, "truth.csv")? {
-            let mut recording =
-                read_trajectory("truth", &scene, table.bytes.as_slice(), &table.path)?;
-            if let Some(events) = self.file(name, "events.csv")? {
-                recording.events = read_events(&scene, events.bytes.as_slice(), &events.path)?;
-            }
-            check_start(&scene, &recording, &table.path)?;
-            truth = Some(recording);
-        }
         let origin = self
             .file(name, "ORIGIN.md")?
             .map(|file| file.text())
             .transpose()?;
-        let origin = origin.map(|text| without_heading(&text).to_owned());
+        let is_own = |text: &String| text.starts_with(OWN_ORIGIN);
+        let evidence = if origin.as_ref().is_some_and(is_own) {
+            Evidence::Own
+        } else {
+            Evidence::Independent
+        };
+        let truth = self.truth(name, &scene, evidence)?;
         Ok(Case {
             scene,
+            evidence: truth.is_some().then_some(evidence),
             truth,
-            origin,
+            origin: origin.map(|text| without_heading(&text).to_owned()),
         })
+    }
+
+    fn truth(&self, name: &str, scene: &Scene, evidence: Evidence) -> Result<Option<Recording>> {
+        let Some(table) = self.file(name, "truth.csv")? else {
+            return Ok(None);
+        };
+        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
+        let mut recording = match evidence {
+            Evidence::Independent => read_trajectory(TRUTH, scene, bytes, path)?,
+            Evidence::Own => {
+                up_to_its_end(read_trajectory_start(TRUTH, scene, bytes, path)?, scene)
+            }
+        };
+        if let Some(events) = self.file(name, "events.csv")? {
+            recording.events = read_events(scene, events.bytes.as_slice(), &events.path)?;
+        }
+        check_start(scene, &recording, path)?;
+        Ok(Some(recording))
     }
 
     /// The text of a case's scene file, as it stands.
@@ -188,6 +224,17 @@ fn check_start(scene: &Scene, truth: &Recording, file: &str) -> Result<()> {
     Ok(())
 }
 
+/// Marks that a truth of carom's own ends where the model has no single answer any more.
+fn up_to_its_end(mut recording: Recording, scene: &Scene) -> Recording {
+    let count = recording.sample_count();
+    recording.undetermined = (count <= scene.sample_count()).then(|| Undetermined {
+        time: scene.sample_time(count),
+        bodies: Vec::new(),
+        spread: None,
+    });
+    recording
+}
+
 /// A text without a Markdown heading in its first line.
 fn without_heading(text: &str) -> &str {
     match text.split_once('\n') {
@@ -224,6 +271,7 @@ pub fn scene_or_case(name: &str, library: &Library) -> Result<Case> {
         return Ok(Case {
             scene: scene::read(path)?,
             truth: None,
+            evidence: None,
             origin: None,
         });
     }

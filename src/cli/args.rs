@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::case::Library;
-use crate::engine::{DEFAULT_DT, EngineSpec, engine, engines};
+use crate::engine::{DEFAULT_DT, EngineSpec, engine, engines, prepare};
 use crate::error::{Error, Result};
+use crate::scene::Scene;
 
 /// Which engines, and with which step.
 #[derive(Debug, Args)]
 pub(super) struct EngineArgs {
-    /// Engines, separated by commas; pictures show the first two, and truth
+    /// Engines, separated by commas; pictures show the first two that take steps, and exact or truth
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     /// Largest time step, s; the step taken divides the time between samples
@@ -20,6 +21,18 @@ pub(super) struct EngineArgs {
 }
 
 impl EngineArgs {
+    /// Sees that the engines can start on a scene. One that was not asked for by name may refuse:
+    /// the comparison then says so.
+    pub fn prepare(&self, scene: &Scene, specs: &[EngineSpec]) -> Result<()> {
+        for spec in specs {
+            match prepare(scene, spec, self.dt) {
+                Err(Error::EngineCannot { .. }) if self.names.is_empty() => {}
+                started => drop(started?),
+            }
+        }
+        Ok(())
+    }
+
     /// The engines asked for, or these of the ones this build has.
     pub fn specs(&self, default: &[&str]) -> Result<Vec<EngineSpec>> {
         if self.names.is_empty() {
@@ -39,6 +52,10 @@ impl EngineArgs {
         Ok(specs)
     }
 }
+
+/// The engines that a report compares unless others are asked for.
+pub(super) const REPORTED: [&str; 5] =
+    ["lecture", "rapier", "rapier-f64", "rapier-matched", "exact"];
 
 /// Where cases come from.
 #[derive(Debug, Args)]

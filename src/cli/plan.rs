@@ -2,11 +2,15 @@
 
 use std::fmt::Write;
 
-use super::args::{EngineArgs, LibraryArgs};
+use serde::Serialize;
+
+use super::args::{EngineArgs, LibraryArgs, REPORTED};
 use super::output::say;
 use crate::case::scene_or_case;
-use crate::engine::{Plan, notes, plan};
-use crate::error::Result;
+use crate::engine::{EngineSpec, Plan, notes, plan};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::study::Refusal;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -22,21 +26,46 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = args
-        .engines
-        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
+    let specs = args.engines.specs(&REPORTED)?;
     let case = scene_or_case(&args.scene, &args.library.library())?;
+    args.engines.prepare(&case.scene, &specs)?;
     let plans = specs
         .iter()
-        .map(|spec| plan(&case.scene, spec, args.engines.dt))
+        .map(|spec| Row::of(&case.scene, spec, args.engines.dt))
         .collect::<Result<Vec<_>>>()?;
     if args.json {
         return say(serde_json::to_string_pretty(&plans)?);
     }
-    for (plan, spec) in plans.iter().zip(&specs) {
-        say(in_words(plan, &notes(&case.scene, spec)))?;
+    for (row, spec) in plans.iter().zip(&specs) {
+        match row {
+            Row::Plan(plan) => say(in_words(plan, &notes(&case.scene, spec)))?,
+            Row::Refusal(Refusal { engine, reason }) => {
+                say(format_args!("{engine}\n      * {reason}\n"))?;
+            }
+        }
     }
     Ok(())
+}
+
+/// What an engine does, or why it cannot.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Row {
+    Plan(Plan),
+    Refusal(Refusal),
+}
+
+impl Row {
+    fn of(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Self> {
+        match plan(scene, spec, dt) {
+            Ok(plan) => Ok(Self::Plan(plan)),
+            Err(refusal @ Error::EngineCannot { .. }) => Ok(Self::Refusal(Refusal {
+                engine: spec.name.clone(),
+                reason: refusal.to_string(),
+            })),
+            Err(error) => Err(error),
+        }
+    }
 }
 
 fn in_words(plan: &Plan, notes: &[String]) -> String {

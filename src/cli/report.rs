@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 
-use super::args::{EngineArgs, LibraryArgs};
+use super::args::{EngineArgs, LibraryArgs, REPORTED};
 use super::output::{progress, say, warn};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -28,9 +28,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = args
-        .engines
-        .specs(&["lecture", "rapier", "rapier-f64", "rapier-matched"])?;
+    let specs = args.engines.specs(&REPORTED)?;
     let dt = args.engines.dt;
     let library = args.library.library();
     let mut names = if args.cases.is_empty() {

@@ -29,7 +29,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = args.engines.specs(&["lecture", "rapier"])?;
+    let specs = args.engines.specs(&["lecture", "rapier", "exact"])?;
     let case = scene_or_case(&args.scene, &args.library.library())?;
     let out = args
         .out
@@ -38,9 +38,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     for warning in case.scene.warnings() {
         warn(warning);
     }
-    for spec in &specs {
-        crate::engine::prepare(&case.scene, spec, args.engines.dt)?;
-    }
+    args.engines.prepare(&case.scene, &specs)?;
     let folder = Folder::open(&out)?;
     let bar = spinner(&case.scene.name, args.quiet);
     let comparison = side_by_side(&case, &specs, args.engines.dt)?;

@@ -6,6 +6,7 @@ use clap::Subcommand;
 
 use super::args::LibraryArgs;
 use super::output::say;
+use crate::case::Evidence;
 use crate::error::{Error, Result};
 use crate::report::Folder;
 use crate::scene::generate::{Cluster, Gas, Rack};
@@ -137,7 +138,7 @@ struct Listed {
     title: String,
     bodies: usize,
     duration_s: f64,
-    has_truth: bool,
+    truth: Option<Evidence>,
 }
 
 fn list(library: &LibraryArgs, json: bool) -> Result<()> {
@@ -152,7 +153,7 @@ fn list(library: &LibraryArgs, json: bool) -> Result<()> {
                 title: case.scene.heading().to_owned(),
                 bodies: case.scene.bodies.len(),
                 duration_s: case.scene.duration,
-                has_truth: case.truth.is_some(),
+                truth: case.evidence,
             })
         })
         .collect::<Result<Vec<_>>>()?;
@@ -161,7 +162,11 @@ fn list(library: &LibraryArgs, json: bool) -> Result<()> {
     }
     let widest = listed.iter().map(|row| row.name.len()).max().unwrap_or(0);
     for row in &listed {
-        let truth = if row.has_truth { "truth" } else { "" };
+        let truth = match row.truth {
+            Some(Evidence::Independent) => "truth",
+            Some(Evidence::Own) => "exact",
+            None => "",
+        };
         say(format_args!(
             "{:<widest$}  {:<5}  {}",
             row.name, truth, row.title

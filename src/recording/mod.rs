@@ -13,7 +13,7 @@ pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
 pub use events_csv::{read_events, write_events};
 pub use number::finite_or_blank;
 pub use outcome::{CollapseReason, Outcome};
-pub use trajectory_csv::{read_trajectory, write_trajectory};
+pub use trajectory_csv::{read_trajectory, read_trajectory_start, write_trajectory};
 
 use serde::Serialize;
 

@@ -46,6 +46,29 @@ pub fn read_trajectory(
     input: impl Read,
     file: &str,
 ) -> Result<Recording> {
+    read(voice, scene, input, file, scene.sample_count() + 1)
+}
+
+/// The same of a trajectory that may end before the scene does, after any sample.
+///
+/// # Errors
+/// As [`read_trajectory`].
+pub fn read_trajectory_start(
+    voice: &str,
+    scene: &Scene,
+    input: impl Read,
+    file: &str,
+) -> Result<Recording> {
+    read(voice, scene, input, file, 1)
+}
+
+fn read(
+    voice: &str,
+    scene: &Scene,
+    input: impl Read,
+    file: &str,
+    least_samples: usize,
+) -> Result<Recording> {
     let mut table = Table::open(input, &HEADER, file)?;
     let mut recording = Recording::empty(voice, scene.bodies.len());
     let mut states = Vec::with_capacity(scene.bodies.len());
@@ -78,7 +101,7 @@ pub fn read_trajectory(
             states.clear();
         }
     }
-    let complete = states.is_empty() && recording.sample_count() == scene.sample_count() + 1;
+    let complete = states.is_empty() && recording.sample_count() >= least_samples;
     if !complete {
         return Err(table.wrong(format!(
             "ends after {} of {} samples; the file is not complete",

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::format::{code, whole_percent};
 use super::template::fill;
 use super::{engineering, percent};
+use crate::case::TRUTH;
 use crate::compare::{ClusterFacts, RIGHT_WITHIN, TOUCHING, Verdict};
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary};
@@ -201,7 +202,22 @@ fn verdicts(summary: &Summary) -> Vec<String> {
             )
         }
     };
-    summary.verdicts.iter().map(sentence).collect()
+    let engines = summary.verdicts.iter().map(sentence);
+    engines.chain(against_truth(summary)).collect()
+}
+
+/// How the reference itself stands against truth, if it is another voice.
+fn against_truth(summary: &Summary) -> Option<String> {
+    let reference = summary.reference.as_ref()?;
+    let pair = summary.pair(reference, TRUTH)?;
+    Some(format!(
+        "The independent truth and {reference} differ by at most {} ({} of the size) up to {} s, \
+         with {} impacts alike.",
+        with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
+        percent(pair.position_divergence_relative),
+        engineering(pair.compared_until_s),
+        pair.impacts_matched
+    ))
 }
 
 fn parting(summary: &Summary, pair: &PairSummary) -> (String, String) {
@@ -373,10 +389,7 @@ mod tests {
 
     #[test]
     fn the_cluster_table_names_its_time_and_the_reference_first() {
-        let page = page(
-            "cluster-8",
-            Some(|scene| Recording::at_start("truth", scene)),
-        );
+        let page = page("cluster-8", Some(|scene| Recording::at_start(TRUTH, scene)));
         assert!(page.contains("## The cluster until 0 s"), "{page}");
         let rows = table(&page, "time of collapse");
         let names: Vec<_> = rows.iter().map(|row| row[1].as_str()).collect();

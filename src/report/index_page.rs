@@ -9,6 +9,7 @@ use super::format::whole_percent;
 use super::output::write_json;
 use super::template::fill;
 use super::{Folder, engineering, percent};
+use crate::case::{Evidence, TRUTH};
 use crate::compare::RIGHT_WITHIN;
 use crate::engine::EngineSpec;
 use crate::error::Result;
@@ -137,7 +138,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
         cases: summaries.len(),
         with_truth: summaries
             .iter()
-            .filter(|summary| summary.truth_origin.is_some())
+            .filter(|summary| summary.evidence == Some(Evidence::Independent))
             .count(),
         pictures: cfg!(feature = "plots"),
     };
@@ -380,7 +381,7 @@ fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceR
         let against = if spec.takes_steps() {
             reference.as_str()
         } else {
-            "truth"
+            TRUTH
         };
         let pair = summary.pair(&spec.name, against);
         pair.map_or_else(

@@ -4,6 +4,7 @@ use super::chart::{
     AxisLabel, Curve, CurvesFigure, LineStyle, Marks, Panel, PathBody, PathsFigure, Scale, View,
     Weight, curves, paths,
 };
+use super::engineering;
 use crate::compare::{Metrics, Sizes};
 use crate::error::{Error, Result};
 use crate::physics::Vector3;
@@ -187,8 +188,7 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
             color: PAIR_COLORS[number % PAIR_COLORS.len()],
             line: style(number),
             weight: Weight::Main,
-            points: divergence
-                .samples
+            points: divergence.samples[..divergence.comparable]
                 .iter()
                 .map(|at| [at.time, value(at)])
                 .collect(),
@@ -198,11 +198,27 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
     }
     CurvesFigure {
         title: scene.heading().to_owned(),
-        subtitle: format!("how far the voices are apart, {}", steps(voices)),
+        subtitle: format!(
+            "how far the voices are apart, {}{}",
+            steps(voices),
+            vouched(comparison, voices)
+        ),
         x_label: "time [s]".into(),
         panels: vec![position, velocity],
         marks: marks(voices),
     }
+}
+
+/// Until when the voices vouch for their positions, if one does not to the end.
+fn vouched(comparison: &SideBySide, voices: &[&Voice]) -> String {
+    let scene = &comparison.scene;
+    let ends = voices.iter().filter_map(|voice| {
+        let comparable = voice.recording.comparable_samples(scene);
+        let until = scene.sample_time(comparable.max(1) - 1);
+        let is_cut = comparable < voice.recording.sample_count();
+        is_cut.then(|| format!("; {} vouches until {} s", voice.name(), engineering(until)))
+    });
+    ends.collect()
 }
 
 /// A row of strokes for the impacts of each voice that has any.

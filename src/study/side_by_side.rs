@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::case::Case;
+use crate::case::{Case, Evidence};
 use crate::compare::{
     ClusterFacts, Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, cluster_facts,
     compare_events, metrics,
@@ -71,6 +71,8 @@ pub struct SideBySide {
     pub scene: Scene,
     /// Where the truth comes from, where there is one.
     pub origin: Option<String>,
+    /// Who made the truth, where there is one.
+    pub evidence: Option<Evidence>,
     /// The largest step asked for, s.
     pub dt: f64,
     /// The engines in the order asked for, then truth.
@@ -155,11 +157,13 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
             Err(error) => return Err(error),
         }
     }
-    voices.extend(
-        case.truth
-            .iter()
-            .map(|truth| Voice::new(scene, None, truth.clone())),
-    );
+    // What carom's own engine stored says nothing beside that engine.
+    let ran = voices.iter().any(|voice| !voice.takes_steps());
+    let evidence = case
+        .evidence
+        .filter(|evidence| !(ran && *evidence == Evidence::Own));
+    let truth = case.truth.iter().filter(|_| evidence.is_some());
+    voices.extend(truth.map(|truth| Voice::new(scene, None, truth.clone())));
     let scale = common_scale(&voices);
     for voice in &mut voices {
         voice.drift = Drift::of(&voice.metrics, &scale);
@@ -178,7 +182,8 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
         .collect();
     Ok(SideBySide {
         scene: scene.clone(),
-        origin: case.origin.clone(),
+        origin: case.origin.clone().filter(|_| evidence.is_some()),
+        evidence,
         dt,
         scale,
         voices,

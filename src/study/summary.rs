@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Refusal, SideBySide, Voice};
+use crate::case::Evidence;
 use crate::compare::{
     ClusterFacts, Disagreement, Divergence, Drift, EventAgreement, Sizes, Verdict,
 };
@@ -45,6 +46,8 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// Where the truth comes from.
     pub truth_origin: Option<String>,
+    /// Who made the truth.
+    pub evidence: Option<Evidence>,
     /// Each engine, then truth.
     pub voices: Vec<VoiceSummary>,
     /// The voice that the engines are held against.
@@ -163,6 +166,7 @@ impl Summary {
             model_conserves_momentum: scene.effects.conserve_momentum(),
             warnings: scene.warnings().iter().map(ToString::to_string).collect(),
             truth_origin: comparison.origin.clone(),
+            evidence: comparison.evidence,
             voices: comparison
                 .voices
                 .iter()
@@ -331,7 +335,7 @@ mod tests {
     /// To its own end, the lecture's run has collapsed.
     #[test]
     fn a_voice_that_ends_early_ends_the_facts_of_all() {
-        let start = |scene: &Scene| Some(Recording::at_start("truth", scene));
+        let start = |scene: &Scene| Some(Recording::at_start(crate::case::TRUTH, scene));
         let facts = clusters("cluster-8", start);
         assert_eq!(facts[0].unwrap().until_s, 0.0);
         assert_eq!(facts[0], facts[1]);
