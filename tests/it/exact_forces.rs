@@ -543,3 +543,57 @@ fn a_ball_comes_to_rest_on_the_floor() {
         assert!(recording.sample_count() > 30 && fall * (1.0 + e) / (1.0 - e) < 2.0);
     }
 }
+
+/// Two bodies fall head-on from rest and bounce to rest on each other: every impact at the time
+/// of Kepler's radial flight, and at the end of the series they lie together.
+///
+/// With `y = v² R/(2 mu)`, v the speed at distance R, the apex is `R/(1 - y)` and the way from
+/// there to R takes `sqrt(r³/(2 mu)) (sqrt(y (1 - y)) + asin(sqrt y))`.
+#[test]
+fn a_falling_pair_bounces_to_rest_when_kepler_says() {
+    let (g, masses, e) = (3.0, [2.0, 1.0], 0.6);
+    let bodies = vec![
+        body("a", masses[0], 0.3, [-1.0, 0.0, 0.0], [0.0; 3]),
+        body("b", masses[1], 0.2, [1.0, 0.0, 0.0], [0.0; 3]),
+    ];
+    let effects = Effects {
+        attraction: attraction(g),
+        contact: contact(e),
+        ..Effects::default()
+    };
+    let (mu, reach, apart) = (g * (masses[0] + masses[1]), 0.5, 2.0);
+    let from_apex = |y: f64| {
+        let apex: f64 = reach / (1.0 - y);
+        (apex.powi(3) / (2.0 * mu)).sqrt() * ((y * (1.0 - y)).sqrt() + y.sqrt().asin())
+    };
+    let mut y: f64 = 1.0 - reach / apart;
+    let mut time = from_apex(y);
+    let mut times = Vec::new();
+    for _ in 0..200 {
+        times.push(time);
+        y *= e * e;
+        time += 2.0 * from_apex(y);
+    }
+    let scene = scene(3.0, 0.0625, bodies, effects);
+    for recording in [
+        fast(&scene).unwrap(),
+        certified(&scene, OPERATIONS).unwrap().recording,
+    ] {
+        assert_eq!(recording.outcome, Outcome::Finished);
+        // The last bounces are merged in the list, and lie within 1e-12 s of each other.
+        let events = recording.events.events();
+        assert!(events.len() >= 20, "{}", events.len());
+        for (event, time) in events.iter().zip(&times).take(20) {
+            // A few ulp of the largest time, twice or thrice at each bounce.
+            assert!((event.time - time).abs() < 1e-14, "{} {time}", event.time);
+        }
+        let lying = (0..recording.sample_count()).filter(|n| scene.sample_time(*n) > time);
+        assert!(lying.clone().count() > 10, "{time}");
+        for states in lying.map(|sample| recording.sample(sample)) {
+            let distance = (states[1].position - states[0].position).norm();
+            assert!((distance - reach).abs() < 1e-15, "{distance}");
+            // Some roundings of the speed at the first impact, 5 m/s, stay as a common drift.
+            assert!(states.iter().all(|state| state.velocity.norm() < 1e-14));
+        }
+    }
+}
