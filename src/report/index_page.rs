@@ -47,6 +47,7 @@ struct Telling {
 #[derive(Serialize)]
 struct EngineRow {
     name: String,
+    takes_steps: bool,
     summary: &'static str,
     settings: String,
 }
@@ -121,6 +122,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .iter()
             .map(|spec| EngineRow {
                 name: spec.name.clone(),
+                takes_steps: spec.takes_steps(),
                 summary: spec.summary,
                 settings: spec.describe(),
             })

@@ -160,7 +160,7 @@ impl<T: Real> ForcesSimulation<T> {
     }
 
     /// The same without ending bounces sooner where a cluster has no single answer, until
-    /// [told to](Self::settle_sooner).
+    /// told to.
     #[must_use]
     pub fn patient(mut self) -> Self {
         self.is_patient = true;
