@@ -171,7 +171,7 @@ fn closed_forms_and_the_integrator_agree() {
         let mut integrator = ForcesSimulation::<Wide>::new(scene, Accuracy::WIDE).unwrap();
         let integrated = drive(scene, "integrated", &mut integrator);
         let errors = errors(scene, &integrated, &closed);
-        assert_below(&scene.name, &errors, 1e-14);
+        assert_below(&scene.name, &errors, 1e-15);
         compared += 1;
     }
     assert!(compared >= 15, "{compared}");

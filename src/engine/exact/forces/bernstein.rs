@@ -12,21 +12,38 @@ use super::series::as_real;
 /// polynomial's range, beyond any approach.
 const DEPTH_MAX: u32 = 50;
 
+/// Where a polynomial first goes from positive to negative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Fall {
+    /// Nowhere on [0, 1].
+    Never,
+    /// Once between these two.
+    Within(f64, f64),
+    /// Numbers drown in the noise.
+    Unclear,
+}
+
 /// A bracket of the first root at which the polynomial goes from positive to negative.
 ///
 /// `coefficients` of powers of u; the search is on 0 <= u <= 1. A polynomial that starts below
-/// zero is followed from where it has come up.
-pub(super) fn first_fall(coefficients: &[f64]) -> Option<(f64, f64)> {
-    let (first, rest) = coefficients.split_first()?;
-    let fall: f64 = rest.iter().map(|c| c.min(0.0)).sum();
-    if *first + fall > 0.0 || !fall.is_finite() {
-        return None;
+/// zero is followed from where it has come up. `noise` is the error of a value of the polynomial:
+/// with one, a decision that hangs on less is none.
+pub(super) fn first_fall<T: Real>(coefficients: &[T], noise: f64) -> Fall {
+    let Some((first, rest)) = coefficients.split_first() else {
+        return Fall::Never;
+    };
+    let fall: f64 = rest.iter().map(|c| c.to_f64().min(0.0)).sum();
+    if first.to_f64() + fall > noise || !fall.is_finite() {
+        return Fall::Never;
     }
     let mut stack = vec![(bernstein(coefficients), 0.0, 1.0, 0)];
     while let Some((b, low, high, depth)) = stack.pop() {
+        if noise > 0.0 && b.iter().any(|b| b.to_f64().abs() <= noise) {
+            return Fall::Unclear;
+        }
         match changes(&b) {
             (0, _) | (1, false) => {}
-            (1, true) => return Some((low, high)),
+            (1, true) => return Fall::Within(low, high),
             _ if depth == DEPTH_MAX => {}
             _ => {
                 let (left, right) = halves(b);
@@ -36,17 +53,17 @@ pub(super) fn first_fall(coefficients: &[f64]) -> Option<(f64, f64)> {
             }
         }
     }
-    None
+    Fall::Never
 }
 
 /// Equation: `b_i = sum_k C(i,k)/C(n,k) a_k`; all weights are positive, so nothing cancels.
-fn bernstein(a: &[f64]) -> Vec<f64> {
+fn bernstein<T: Real>(a: &[T]) -> Vec<T> {
     let n = a.len() - 1;
     let coefficient = |i: usize| {
-        let (mut weight, mut sum) = (1.0, 0.0);
+        let (mut weight, mut sum) = (T::one(), T::zero());
         for (k, a) in a.iter().take(i + 1).enumerate() {
-            sum += weight * a;
-            weight *= as_real(i - k) / as_real((n - k).max(1));
+            sum += weight * *a;
+            weight = weight.times(as_real(i - k)) / T::from_f64(as_real((n - k).max(1)));
         }
         sum
     };
@@ -54,8 +71,9 @@ fn bernstein(a: &[f64]) -> Vec<f64> {
 }
 
 /// How often the sign changes, zeros passed over, and whether it is positive at first.
-fn changes(b: &[f64]) -> (usize, bool) {
-    let mut signs = b.iter().filter(|b| **b != 0.0).map(|b| *b > 0.0);
+fn changes<T: Real>(b: &[T]) -> (usize, bool) {
+    let zero = T::zero();
+    let mut signs = b.iter().filter(|b| **b != zero).map(|b| *b > zero);
     let Some(first) = signs.next() else {
         return (0, true);
     };
@@ -68,13 +86,13 @@ fn changes(b: &[f64]) -> (usize, bool) {
     (count, first)
 }
 
-fn halves(mut b: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+fn halves<T: Real>(mut b: Vec<T>) -> (Vec<T>, Vec<T>) {
     let n = b.len();
     let mut left = Vec::with_capacity(n);
     for level in 0..n {
         left.push(b[0]);
         for i in 0..n - level - 1 {
-            b[i] = 0.5 * (b[i] + b[i + 1]);
+            b[i] = (b[i] + b[i + 1]).times(0.5);
         }
     }
     // What remains in place is the right half.
@@ -121,10 +139,33 @@ fn value_and_slope<T: Real>(coefficients: &[T], u: T) -> (T, T) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::scalar::Wide;
     use super::*;
+    use num_traits::One;
 
     fn root(coefficients: &[f64]) -> Option<f64> {
-        first_fall(coefficients).map(|bracket| polish(coefficients, bracket))
+        match first_fall(coefficients, 0.0) {
+            Fall::Within(low, high) => Some(polish(coefficients, (low, high))),
+            Fall::Never | Fall::Unclear => None,
+        }
+    }
+
+    /// (u - a)(u - b) with roots 1e-10 apart: their square is lost in doubles.
+    #[test]
+    fn what_doubles_cannot_tell_is_unclear() {
+        let (a, b) = (0.5 - 2.0_f64.powi(-34), 0.5 + 2.0_f64.powi(-34));
+        let wide = [
+            Wide::from_f64(a) * Wide::from_f64(b),
+            Wide::from_f64(-1.0),
+            Wide::one(),
+        ];
+        let doubles = wide.map(Real::to_f64);
+        assert_eq!(first_fall(&doubles, 64.0 * f64::ROUNDING), Fall::Unclear);
+        let Fall::Within(low, high) = first_fall(&wide, 0.0) else {
+            panic!("not found");
+        };
+        let found = polish(&wide, (low, high));
+        assert!((found - Wide::from_f64(a)).to_f64().abs() < 1e-20);
     }
 
     #[test]

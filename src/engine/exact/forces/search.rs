@@ -1,9 +1,13 @@
 //! The first event within a step, on the step's own polynomials.
 
-use super::bernstein::{first_fall, polish};
+use super::bernstein::{Fall, first_fall, polish};
 use super::scalar::{Real, Triple, dot, minus, size};
 use super::series::Series;
 use super::touch::{Surfaces, Touch};
+
+/// Error of a polynomial's values in doubles, over its largest coefficient: some roundings for
+/// each of up to fifty terms and halvings.
+const NOISE: f64 = 200.0 * f64::ROUNDING;
 
 /// What ends a step early.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +46,7 @@ pub(super) fn first_event<T: Real>(
     (fresh, idle): (&[Fresh], &[Touch]),
     looked_at: &mut u64,
 ) -> Option<Upcoming<T>> {
-    let powers = powers(span, series.order());
+    let powers = powers::<T>(span, series.order());
     let travel = travel(series, &powers);
     let mut first: Option<Upcoming<T>> = None;
     let mut offer = |at: Option<T>, touch: Touch, cause: Cause| {
@@ -86,19 +90,20 @@ pub(super) fn first_event<T: Real>(
     first
 }
 
-fn powers(span: f64, order: usize) -> Vec<f64> {
-    let next = |power: &f64| Some(power * span);
-    std::iter::successors(Some(1.0), next)
+/// Powers in the full arithmetic: a target that is small and far leaves no digit to lose.
+fn powers<T: Real>(span: f64, order: usize) -> Vec<T> {
+    let next = |power: &T| Some(power.times(span));
+    std::iter::successors(Some(T::one()), next)
         .take(order + 1)
         .collect()
 }
 
 /// A bound on how far each body goes within the step.
-fn travel<T: Real>(series: &Series<T>, powers: &[f64]) -> Vec<f64> {
+fn travel<T: Real>(series: &Series<T>, powers: &[T]) -> Vec<f64> {
     let mut travel = vec![0.0; series.position[0].len()];
     for (coefficients, power) in series.position.iter().zip(powers).skip(1) {
         for (travel, coefficient) in travel.iter_mut().zip(coefficients) {
-            *travel += size(coefficient) * power;
+            *travel += size(coefficient) * power.to_f64();
         }
     }
     travel
@@ -159,13 +164,22 @@ fn gap_series<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch)
 }
 
 /// Where a polynomial in u falls through zero on `0 <= u <= span`.
-fn fall_within<T: Real>(polynomial: &[T], span: f64, powers: &[f64]) -> Option<T> {
+fn fall_within<T: Real>(polynomial: &[T], span: f64, powers: &[T]) -> Option<T> {
     let scaled: Vec<T> = polynomial
         .iter()
         .zip(powers)
-        .map(|(c, power)| c.times(*power))
+        .map(|(c, power)| *c * *power)
         .collect();
     let doubles: Vec<f64> = scaled.iter().map(|c| c.to_f64()).collect();
-    let bracket = first_fall(&doubles)?;
-    Some(polish(&scaled, bracket).times(span))
+    let largest = doubles.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let is_wide = T::ROUNDING < f64::ROUNDING;
+    let noise = if is_wide { NOISE * largest } else { 0.0 };
+    let fall = match first_fall(&doubles, noise) {
+        Fall::Unclear => first_fall(&scaled, 0.0),
+        clear => clear,
+    };
+    match fall {
+        Fall::Within(low, high) => Some(polish(&scaled, (low, high)).times(span)),
+        Fall::Never | Fall::Unclear => None,
+    }
 }
