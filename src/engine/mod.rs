@@ -13,7 +13,8 @@ pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
 pub use record::{drive, record};
 pub use spec::{
-    EngineKind, EngineSpec, ExactSettings, Forces, Precision, RapierSettings, engine, engines,
+    DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Impacts, ImpulseSettings, Integrator,
+    Precision, RapierSettings, engine, engines,
 };
 pub use steps::{DEFAULT_DT, StepGrid};
 
@@ -56,7 +57,7 @@ pub fn prepare(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Box<dyn Simu
     scene.checked()?;
     let grid = StepGrid::new(scene, dt)?;
     match &spec.kind {
-        EngineKind::Impulse => Ok(Box::new(ImpulseSimulation::new(scene, grid))),
+        EngineKind::Impulse(settings) => Ok(impulse::simulation(scene, grid, *settings)),
         EngineKind::Exact(settings) => exact::simulation(scene, *settings),
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::simulation(scene, settings, grid),
@@ -73,7 +74,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
     scene.checked()?;
     let grid = StepGrid::new(scene, dt)?;
     let phases = match &spec.kind {
-        EngineKind::Impulse => ImpulseSimulation::new(scene, grid).phases(),
+        EngineKind::Impulse(settings) => impulse::phases(scene, *settings),
         EngineKind::Exact(settings) => exact::phases(scene, *settings)?,
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::phases(scene, settings, grid)?,
@@ -95,7 +96,7 @@ pub fn plan(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Plan> {
 #[must_use]
 pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     match &spec.kind {
-        EngineKind::Impulse => impulse::notes(scene),
+        EngineKind::Impulse(settings) => impulse::notes(scene, *settings),
         EngineKind::Exact(_) => Vec::new(),
         #[cfg(feature = "rapier")]
         EngineKind::Rapier(settings) => rapier::notes(scene, settings),
@@ -109,7 +110,7 @@ pub fn notes(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
 #[must_use]
 pub fn warnings(scene: &Scene, spec: &EngineSpec) -> Vec<String> {
     match &spec.kind {
-        EngineKind::Impulse | EngineKind::Exact(_) => Vec::new(),
+        EngineKind::Impulse(_) | EngineKind::Exact(_) => Vec::new(),
         EngineKind::Rapier(settings) => {
             #[cfg(feature = "rapier")]
             return rapier::warnings(scene, settings);

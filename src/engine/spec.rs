@@ -19,12 +19,105 @@ pub struct EngineSpec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum EngineKind {
-    /// The hand-written impulse solver.
-    Impulse,
+    /// The hand-written impulse solver, or a rung of its ladder.
+    Impulse(ImpulseSettings),
     /// The event-driven exact engine.
     Exact(ExactSettings),
     /// A Rapier world.
     Rapier(RapierSettings),
+}
+
+/// How bodies move between impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Integrator {
+    /// Kick by all forces, then drift: the lecture's. Order 1.
+    SymplecticEuler,
+    /// Half a kick, drift, half a kick. Order 2.
+    VelocityVerlet,
+    /// Four stages. Order 4.
+    RungeKutta4,
+}
+
+/// How drag acts in the hand-written solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DragRule {
+    /// A force, explicit.
+    Force,
+    /// The exact decay of the velocity, with the path that goes with it.
+    Exponential,
+}
+
+/// How impacts, cushions and rests are found in the hand-written solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Impacts {
+    /// By overlap at the end of a step, which is pushed apart: the lecture's.
+    Overlap,
+    /// By overlap at the end of a step, which stays.
+    OverlapInPlace,
+    /// At the time of impact within the step.
+    Swept,
+}
+
+/// Numerical choices of the hand-written solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct ImpulseSettings {
+    /// How bodies move between impacts.
+    pub integrator: Integrator,
+    /// How drag acts.
+    pub drag: DragRule,
+    /// How impacts are found.
+    pub impacts: Impacts,
+}
+
+impl ImpulseSettings {
+    /// The slides' choices.
+    pub const LECTURE: Self = Self {
+        integrator: Integrator::SymplecticEuler,
+        drag: DragRule::Force,
+        impacts: Impacts::Overlap,
+    };
+
+    /// Order in the step of the motion without impacts, for forces of any kind.
+    #[must_use]
+    pub fn order(self) -> u8 {
+        match self.integrator {
+            Integrator::SymplecticEuler => 1,
+            Integrator::VelocityVerlet => 2,
+            Integrator::RungeKutta4 => 4,
+        }
+    }
+
+    /// Order in the step through impacts: overlaps are found up to a step late.
+    #[must_use]
+    pub fn order_through_impacts(self) -> u8 {
+        match self.impacts {
+            Impacts::Overlap | Impacts::OverlapInPlace => 1,
+            Impacts::Swept => self.order(),
+        }
+    }
+
+    fn describe(self) -> String {
+        let motion = match self.integrator {
+            Integrator::SymplecticEuler => "Symplectic Euler",
+            Integrator::VelocityVerlet => "Velocity Verlet",
+            Integrator::RungeKutta4 => "Runge-Kutta of order 4",
+        };
+        let drag = match self.drag {
+            DragRule::Force => "",
+            DragRule::Exponential => ", exact drag",
+        };
+        let impacts = match self.impacts {
+            Impacts::Overlap => {
+                "impulses at the first overlap, push-out by (1 + e)/2 of it on each side"
+            }
+            Impacts::OverlapInPlace => "impulses at the first overlap, no push-out",
+            Impacts::Swept => "impulses at the time of impact",
+        };
+        format!("{motion}{drag}, {impacts}.")
+    }
 }
 
 /// Settings of the exact engine.
@@ -120,7 +213,7 @@ impl EngineSpec {
     #[must_use]
     pub fn takes_steps(&self) -> bool {
         match self.kind {
-            EngineKind::Impulse | EngineKind::Rapier(_) => true,
+            EngineKind::Impulse(_) | EngineKind::Rapier(_) => true,
             EngineKind::Exact(_) => false,
         }
     }
@@ -129,7 +222,7 @@ impl EngineSpec {
     #[must_use]
     pub fn is_built(&self) -> bool {
         match self.kind {
-            EngineKind::Impulse | EngineKind::Exact(_) => true,
+            EngineKind::Impulse(_) | EngineKind::Exact(_) => true,
             EngineKind::Rapier(_) => cfg!(feature = "rapier"),
         }
     }
@@ -138,9 +231,7 @@ impl EngineSpec {
     #[must_use]
     pub fn describe(&self) -> String {
         match &self.kind {
-            EngineKind::Impulse => "Symplectic Euler, impulses at the first overlap, push-out by \
-                                    (1 + e)/2 of it on each side."
-                .to_owned(),
+            EngineKind::Impulse(settings) => settings.describe(),
             EngineKind::Exact(settings) if settings.certify => {
                 "From event to event without a time step, computed more than once to certify its \
                  own digits."
@@ -205,7 +296,7 @@ pub fn engines() -> Vec<EngineSpec> {
         row(
             "lecture",
             "the slides' impulse solver, bit for bit",
-            EngineKind::Impulse,
+            EngineKind::Impulse(ImpulseSettings::LECTURE),
         ),
         row(
             "rapier",
@@ -232,7 +323,56 @@ pub fn engines() -> Vec<EngineSpec> {
             "event-driven, without certification: for speed",
             EngineKind::Exact(ExactSettings::bounded(false)),
         ),
+        row(
+            "lecture-in-place",
+            "the lecture without its push-out",
+            rung(
+                Integrator::SymplecticEuler,
+                DragRule::Force,
+                Impacts::OverlapInPlace,
+            ),
+        ),
+        row(
+            "exact-drag",
+            "the lecture with the exact decay under drag",
+            rung(
+                Integrator::SymplecticEuler,
+                DragRule::Exponential,
+                Impacts::Overlap,
+            ),
+        ),
+        row(
+            "verlet",
+            "the same with velocity Verlet",
+            rung(
+                Integrator::VelocityVerlet,
+                DragRule::Exponential,
+                Impacts::Overlap,
+            ),
+        ),
+        row(
+            "swept",
+            "the same with impacts at their time",
+            rung(
+                Integrator::VelocityVerlet,
+                DragRule::Exponential,
+                Impacts::Swept,
+            ),
+        ),
+        row(
+            "swept-4",
+            "Runge-Kutta of order 4 with impacts at their time",
+            rung(Integrator::RungeKutta4, DragRule::Force, Impacts::Swept),
+        ),
     ]
+}
+
+fn rung(integrator: Integrator, drag: DragRule, impacts: Impacts) -> EngineKind {
+    EngineKind::Impulse(ImpulseSettings {
+        integrator,
+        drag,
+        impacts,
+    })
 }
 
 /// The engine of that name.

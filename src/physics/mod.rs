@@ -3,10 +3,12 @@
 //! Every function that the `lecture` engine uses keeps the slides' order of arithmetic, every
 //! operator left to right, so that the engine reproduces their C++ to the last bit.
 
+pub mod closing;
 mod energy;
 mod force;
 mod impulse;
 mod momentum;
+pub mod real;
 mod spring;
 mod state;
 

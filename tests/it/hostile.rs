@@ -133,10 +133,13 @@ fn in_short(mut spec: EngineSpec) -> EngineSpec {
 /// worlds record 51 % to 56 %, which are the tame half and a few, and finish 48 %, as the
 /// matched one does 40 %. Five deviations of 200 draws, 18 %, lie between these and the bounds.
 /// The exact engine refuses spheres that overlap at the start and rest with a force, and records
-/// 25 %; 10 % and, in doubles, 13 % get to the end within the work allowed here.
+/// 25 %; 10 % and, in doubles, 13 % get to the end within the work allowed here. Of the rungs of
+/// the ladder those with exact drag finish 62 % to 64 %, Runge-Kutta 53 %.
 fn shares(engine: &str) -> [u32; 2] {
     match engine {
-        "lecture" => [100, 37],
+        "lecture" | "lecture-in-place" => [100, 37],
+        "exact-drag" | "verlet" | "swept" => [100, 44],
+        "swept-4" => [100, 35],
         "rapier" | "rapier-f64" => [32, 30],
         "rapier-matched" => [32, 22],
         "exact" | "exact-fast" => [9, 1],
@@ -150,7 +153,9 @@ fn run(scene: &Scene, spec: &EngineSpec, dt: f64, kept: &mut Kept) -> Result<(),
     let recording = match record(scene, spec, dt) {
         Ok(recording) => recording,
         // A refusal names what the engine cannot do; the shares below bound how often.
-        Err(Error::EngineCannot { .. }) if spec.name != "lecture" => return Ok(()),
+        Err(Error::EngineCannot { .. }) if !matches!(spec.kind, EngineKind::Impulse(_)) => {
+            return Ok(());
+        }
         Err(error) => return Err(TestCaseError::fail(format!("{}: {error}", spec.name))),
     };
     kept.recorded += 1;

@@ -15,6 +15,7 @@ mod hostile;
 mod invariants;
 mod layers;
 mod oracle;
+mod orders;
 mod own_truth;
 mod plain_loop;
 mod plan;

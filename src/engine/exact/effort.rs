@@ -1,6 +1,6 @@
 //! Counted work with a limit, so that no scene computes without end.
 
-use super::real::Real;
+use crate::physics::real::Real;
 
 /// Elementary operations done, about one a nanosecond, and how many may be done.
 ///

@@ -8,12 +8,12 @@ mod effort;
 pub mod flight;
 pub mod forces;
 mod order;
-mod real;
+
 mod settling;
 mod wide;
 
+pub use crate::physics::real::Real;
 pub use order::TieOrder;
-pub use real::Real;
 pub use wide::Wide;
 
 use super::{ExactSettings, Phase, Simulation};

@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use num_traits::{One, Zero};
 use twofloat::TwoFloat;
 
-use super::real::Real;
+use crate::physics::real::Real;
 
 /// A double-double number, about 31 digits, with the exponents of a double.
 ///

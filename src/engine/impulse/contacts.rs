@@ -8,7 +8,11 @@ use crate::scene::Contact;
 
 /// Slides' loop over `collisionHandler(i, j)`, i < j.
 #[inline]
-pub(super) fn collide(particles: &mut [Particle], effect: Contact, observer: &mut impl Observer) {
+pub(super) fn collide<const PUSH_OUT: bool>(
+    particles: &mut [Particle],
+    effect: Contact,
+    observer: &mut impl Observer,
+) {
     for i in 0..particles.len() {
         let (head, tail) = particles.split_at_mut(i + 1);
         let a = &mut head[i];
@@ -16,7 +20,7 @@ pub(super) fn collide(particles: &mut [Particle], effect: Contact, observer: &mu
             let apart = a.position - b.position;
             let distance = length(&apart);
             if distance < a.radius + b.radius {
-                let impulse = separate(a, b, &apart, distance, effect.restitution);
+                let impulse = separate::<PUSH_OUT>(a, b, &apart, distance, effect.restitution);
                 if let Some(impulse) = impulse {
                     observer.note(
                         EventKind::Contact {
@@ -36,7 +40,7 @@ pub(super) fn collide(particles: &mut [Particle], effect: Contact, observer: &mu
 ///
 /// Kept out of the loop: overlapping is rare, and the loop over pairs stays small.
 #[inline(never)]
-fn separate(
+fn separate<const PUSH_OUT: bool>(
     a: &mut Particle,
     b: &mut Particle,
     apart: &Vector3,
@@ -44,12 +48,41 @@ fn separate(
     restitution: f64,
 ) -> Option<f64> {
     let penetration = a.radius + b.radius - distance;
-    let normal = if distance > 0.0 {
+    let normal = line_of_action(apart, distance, &a.velocity, &b.velocity);
+    let impulse = strike(a, b, &normal, restitution);
+    if PUSH_OUT {
+        let push_out = normal * (0.5 * (1.0 + restitution) * penetration);
+        a.position += push_out;
+        b.position -= push_out;
+    }
+    impulse
+}
+
+/// The impulse of two touching spheres that approach; none if they do not.
+pub(super) fn hit(a: &mut Particle, b: &mut Particle, restitution: f64) -> Option<f64> {
+    let apart = a.position - b.position;
+    let normal = line_of_action(&apart, length(&apart), &a.velocity, &b.velocity);
+    strike(a, b, &normal, restitution)
+}
+
+/// Rate of the distance of two spheres, `apart` being from b to a.
+pub(super) fn approach(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector3) -> f64 {
+    (va - vb).dot(&line_of_action(apart, distance, va, vb))
+}
+
+#[inline]
+fn line_of_action(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector3) -> Vector3 {
+    if distance > 0.0 {
         apart / distance
     } else {
-        coincident_normal(&a.velocity, &b.velocity)
-    };
-    let (v1n, v2n) = (a.velocity.dot(&normal), b.velocity.dot(&normal));
+        coincident_normal(va, vb)
+    }
+}
+
+/// Slides' impulse along the line of action, from b to a.
+#[inline]
+fn strike(a: &mut Particle, b: &mut Particle, normal: &Vector3, restitution: f64) -> Option<f64> {
+    let (v1n, v2n) = (a.velocity.dot(normal), b.velocity.dot(normal));
     let approach_velocity = v1n - v2n;
     let mut impulse = None;
     if approach_velocity < 0.0 {
@@ -59,9 +92,6 @@ fn separate(
         b.velocity = b.velocity - normal * v2n + normal * v2_new;
         impulse = Some(j);
     }
-    let push_out = normal * (0.5 * (1.0 + restitution) * penetration);
-    a.position += push_out;
-    b.position -= push_out;
     impulse
 }
 
@@ -100,7 +130,7 @@ mod tests {
             particle(Vector3::new(1.9, 0.0, 0.0), Vector3::new(-1.0, 0.0, 0.0)),
             particle(Vector3::zeros(), Vector3::zeros()),
         ];
-        collide(&mut pair, Contact { restitution: 1.0 }, &mut Nobody);
+        collide::<true>(&mut pair, Contact { restitution: 1.0 }, &mut Nobody);
         assert_eq!(pair[0].velocity, Vector3::zeros());
         assert_eq!(pair[1].velocity, Vector3::new(-1.0, 0.0, 0.0));
         assert!(
@@ -116,7 +146,7 @@ mod tests {
             particle(still, still),
             particle(still, Vector3::new(0.0, 3.0, 0.0)),
         ];
-        collide(&mut pair, Contact { restitution: 0.5 }, &mut Nobody);
+        collide::<true>(&mut pair, Contact { restitution: 0.5 }, &mut Nobody);
         let apart = pair[0].position - pair[1].position;
         assert_eq!(
             apart,
@@ -124,7 +154,7 @@ mod tests {
             "(1 + e) times the overlap of 2, along y"
         );
         let mut resting = [particle(still, still), particle(still, still)];
-        collide(&mut resting, Contact { restitution: 0.5 }, &mut Nobody);
+        collide::<true>(&mut resting, Contact { restitution: 0.5 }, &mut Nobody);
         assert_eq!(
             resting[0].position - resting[1].position,
             Vector3::new(3.0, 0.0, 0.0)

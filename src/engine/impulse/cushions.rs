@@ -24,13 +24,17 @@ const ORDER: [Wall; 6] = [
 /// DEVIATES: the slides' cushions are elastic; here `2.0` stands as `1.0 + e`, the same bits at
 /// e = 1. With `half_height` the chain goes on to the walls +y and -y.
 #[inline]
-pub(super) fn bounce(particles: &mut [Particle], effect: &Cushions, observer: &mut impl Observer) {
+pub(super) fn bounce<const PUSH_OUT: bool>(
+    particles: &mut [Particle],
+    effect: &Cushions,
+    observer: &mut impl Observer,
+) {
     let walls = if effect.half_height.is_some() { 6 } else { 4 };
     let half = effect.half_extents();
     for (body, particle) in particles.iter_mut().enumerate() {
         for wall in &ORDER[..walls] {
             let (axis, side) = wall.axis_and_side();
-            if bounce_off(
+            if bounce_off::<PUSH_OUT>(
                 particle,
                 axis,
                 side,
@@ -46,9 +50,28 @@ pub(super) fn bounce(particles: &mut [Particle], effect: &Cushions, observer: &m
     }
 }
 
+/// A touching ball's velocity mirrored at a wall; the impulse, none if it moves away.
+#[inline]
+pub(super) fn mirror(
+    particle: &mut Particle,
+    axis: usize,
+    side: f64,
+    restitution: f64,
+) -> Option<f64> {
+    let normal = -side;
+    let normal_velocity = particle.velocity[axis] * normal;
+    if normal_velocity < 0.0 {
+        let impulse = cushion_impulse(restitution, particle.mass, normal_velocity);
+        particle.velocity[axis] -= (1.0 + restitution) * normal_velocity * normal;
+        Some(impulse)
+    } else {
+        None
+    }
+}
+
 /// One link of the chain: whether the ball overlaps this wall, which is then dealt with.
 #[inline]
-fn bounce_off(
+fn bounce_off<const PUSH_OUT: bool>(
     particle: &mut Particle,
     axis: usize,
     side: f64,
@@ -68,12 +91,11 @@ fn bounce_off(
         }
         -half - coordinate + r
     };
-    let normal = -side;
-    let normal_velocity = particle.velocity[axis] * normal;
-    if normal_velocity < 0.0 {
-        note(cushion_impulse(restitution, particle.mass, normal_velocity));
-        particle.velocity[axis] -= (1.0 + restitution) * normal_velocity * normal;
+    if let Some(impulse) = mirror(particle, axis, side, restitution) {
+        note(impulse);
     }
-    particle.position[axis] += (1.0 + restitution) * penetration * normal;
+    if PUSH_OUT {
+        particle.position[axis] += (1.0 + restitution) * penetration * -side;
+    }
     true
 }

@@ -3,14 +3,26 @@
 //! One step, in the slides' order: clear forces; attraction, drag, springs, gravity; kick
 //! `v += dt F/m`; drift `x += dt v`; rest; cushions; contacts. A phase that the scene does not
 //! call for is not there.
+//!
+//! The other rungs of the ladder change one numerical choice at a time: `motion` and
+//! `runge_kutta` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
+//! which of them a name means.
 
 mod contacts;
 mod cushions;
 mod forces;
+mod handling;
+mod ladder;
+mod motion;
 mod notes;
 mod observer;
+mod path;
+mod phases;
+mod runge_kutta;
 mod simulation;
+mod sweep;
 
+pub use ladder::{phases, simulation};
 pub use notes::notes;
 pub use simulation::ImpulseSimulation;
 

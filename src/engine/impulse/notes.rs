@@ -1,12 +1,16 @@
 //! Where the solver departs from the slides on a given scene.
 
+use crate::engine::spec::ImpulseSettings;
 use crate::scene::Scene;
 
 /// The departures (`DEVIATES:` in the sources) that can matter on this scene, a line each.
 #[must_use]
-pub fn notes(scene: &Scene) -> Vec<String> {
+pub fn notes(scene: &Scene, settings: ImpulseSettings) -> Vec<String> {
     let effects = &scene.effects;
     let mut notes = Vec::new();
+    if settings != ImpulseSettings::LECTURE {
+        notes.push("a rung of the ladder: other numerical choices than the slides'".to_owned());
+    }
     let guards = [
         (
             effects.contact.is_some(),

@@ -4,8 +4,13 @@ use crate::recording::{Event, EventKind, EventLog};
 
 /// Something told of events while the solver steps.
 pub(super) trait Observer {
-    /// An event in the present step.
-    fn note(&mut self, kind: EventKind, impulse: f64);
+    /// An event at the end of the present step.
+    fn note(&mut self, kind: EventKind, impulse: f64) {
+        self.note_before_end(kind, impulse, 0.0);
+    }
+
+    /// An event so much time before the end of the present step.
+    fn note_before_end(&mut self, kind: EventKind, impulse: f64, before: f64);
 }
 
 /// Nobody watches: every call compiles to nothing.
@@ -13,7 +18,7 @@ pub(super) struct Nobody;
 
 impl Observer for Nobody {
     #[inline]
-    fn note(&mut self, _kind: EventKind, _impulse: f64) {}
+    fn note_before_end(&mut self, _kind: EventKind, _impulse: f64, _before: f64) {}
 }
 
 /// Notes events with the time at which the present step ends.
@@ -25,9 +30,9 @@ pub(super) struct Scribe<'a> {
 }
 
 impl Observer for Scribe<'_> {
-    fn note(&mut self, kind: EventKind, impulse: f64) {
+    fn note_before_end(&mut self, kind: EventKind, impulse: f64, before: f64) {
         self.log.push(Event {
-            time: self.time,
+            time: self.time - before,
             kind,
             impulse,
         });

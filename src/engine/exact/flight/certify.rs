@@ -6,9 +6,9 @@ use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
-use crate::engine::exact::real::Real;
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
+use crate::physics::real::Real;
 use crate::recording::{Digits, Outcome, Recording, Undetermined, initial_states};
 use crate::scene::Scene;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 
 /// Spheres this many radius sums apart (squared) get the impact parameter by products without
 /// rounding: nearer, plain rounding is small beside the radii anyway.
@@ -63,8 +63,8 @@ fn careful_cross<R: Real>(d: &Vector3<R>, w: &Vector3<R>) -> Vector3<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::exact::real::vector;
     use crate::engine::exact::wide::Wide;
+    use crate::physics::real::vector;
 
     #[test]
     fn a_head_on_meeting_is_the_gap_over_the_speed() {

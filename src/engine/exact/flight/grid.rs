@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 
 /// No body.
 const NONE: u32 = u32::MAX;

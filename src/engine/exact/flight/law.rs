@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::engine::exact::real::{Real, vector};
+use crate::physics::real::{Real, vector};
 use crate::scene::Scene;
 
 /// What stays the same of a body.

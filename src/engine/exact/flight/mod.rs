@@ -1,6 +1,6 @@
 //! Scenes without attraction and springs: flights in closed form from event to event.
 //!
-//! `law` says how a body flies; `encounter`, `plane` and `search` when it meets something;
+//! `law` says how a body flies; `encounter` and `plane` when it meets something;
 //! `plan` what comes next for one body, `queue` for all; `world` lets it happen. `grid` keeps
 //! the number of pairs to look at small.
 
@@ -14,7 +14,7 @@ mod plan;
 mod plane;
 mod queue;
 mod runaway;
-mod search;
+
 mod simulation;
 mod turn;
 mod world;

@@ -1,8 +1,8 @@
 //! A scene as this engine needs it: bodies, law of flight, walls, rules; what it must refuse.
 
 use super::law::{Fixed, Law, State};
-use crate::engine::exact::real::{Real, vector};
 use crate::error::{Error, Result};
+use crate::physics::real::{Real, vector};
 use crate::recording::Wall;
 use crate::scene::Scene;
 use crate::scene::overlap::overlaps;

@@ -2,7 +2,7 @@
 
 use super::law::State;
 use super::model::Model;
-use crate::engine::exact::real::{Real, length};
+use crate::physics::real::{Real, length};
 
 /// Moves every number of a scene by the relative `share`, up or down by lot.
 ///

@@ -6,10 +6,10 @@ use super::encounter::clock_to_contact;
 use super::grid::Face;
 use super::law::{Law, State};
 use super::plane::{Approach, clock_to_plane};
-use super::search::{Opening, Search, first_closing};
 use super::world::World;
 use crate::engine::exact::order::{INTERNAL, TieOrder};
-use crate::engine::exact::real::{Real, length};
+use crate::physics::closing::{Opening, Search, first_closing};
+use crate::physics::real::{Real, length};
 use crate::recording::EventKind;
 
 /// Speeds of approach below this many roundings of the speeds are none, right after an impact.

@@ -1,6 +1,6 @@
 //! When a sphere reaches a plane across an axis: a wall, or the face of a cell.
 
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 
 /// The motion along one axis towards a plane.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Whose event comes next: a tournament of all bodies.
 
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 
 /// Bodies that share a leaf: their times lie in one line of the cache and are scanned.
 const BLOCK: usize = 8;

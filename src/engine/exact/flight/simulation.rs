@@ -10,9 +10,9 @@ use super::world::World;
 use crate::engine::Simulation;
 use crate::engine::exact::effort::Effort;
 use crate::engine::exact::order::TieOrder;
-use crate::engine::exact::real::{Real, vector};
 use crate::error::Result;
 use crate::physics::BodyState;
+use crate::physics::real::{Real, vector};
 use crate::recording::{EventLog, Outcome, Work};
 use crate::scene::Scene;
 

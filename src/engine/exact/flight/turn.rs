@@ -4,7 +4,7 @@ use super::plan::Deed;
 use super::simulation::{FlightSimulation, Simultaneous};
 use super::world::Impact;
 use crate::engine::exact::order::INTERNAL;
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 use crate::recording::{CollapseReason, Event, EventKind, EventLog, Outcome};
 
 /// Changes of cell, a body, without any event between them that are worth their while.

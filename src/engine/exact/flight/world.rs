@@ -6,7 +6,7 @@ use super::grid::{Face, Grid};
 use super::law::State;
 use super::model::Model;
 use crate::engine::exact::order::TieOrder;
-use crate::engine::exact::real::{Real, length};
+use crate::physics::real::{Real, length};
 use crate::recording::Wall;
 
 /// With more bodies than this, cells save time.

@@ -1,10 +1,10 @@
 //! When a gap closes that has no closed form: a search from one side that cannot skip a root.
 
-use crate::engine::exact::real::Real;
+use crate::physics::real::Real;
 
 /// A gap at one instant, and how it may change from there on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Opening<R> {
+pub struct Opening<R> {
     /// Distance still to go; touching at 0.
     pub width: R,
     /// Rate at which it changes; negative on approach.
@@ -15,7 +15,7 @@ pub(super) struct Opening<R> {
 
 /// What a search came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Search<R> {
+pub enum Search<R> {
     /// The gap closes after this time.
     Closes(R),
     /// It stays open at least for this time; ask again then.
@@ -35,11 +35,7 @@ const STEPS_MAX: u32 = 200;
 /// Valid for: a bound that holds from each instant on. Source: conservative advancement,
 /// Mirtich 1996, with the second derivative in place of the first.
 /// `shortest` is a time too short to matter, above 0.
-pub(super) fn first_closing<R: Real>(
-    until: R,
-    shortest: R,
-    at: impl Fn(R) -> Opening<R>,
-) -> Search<R> {
+pub fn first_closing<R: Real>(until: R, shortest: R, at: impl Fn(R) -> Opening<R>) -> Search<R> {
     let mut time = R::zero();
     for _ in 0..STEPS_MAX {
         let now = at(time);

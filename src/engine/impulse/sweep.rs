@@ -1,0 +1,255 @@
+//! Impacts, cushions and rests at the time at which they happen within a step.
+
+use super::contacts::{approach, hit};
+use super::handling::{Handling, Taken, pairs};
+use super::motion::Motion;
+use super::observer::Observer;
+use super::path::Path;
+use super::phases::Phases;
+use super::{Particle, cushions};
+use crate::physics::closing::{Opening, Search, first_closing};
+use crate::physics::{Vector3, length};
+use crate::recording::{EventKind, Wall};
+
+/// Impacts in one step, a body, after which what is left of it is dealt with by overlap: bounces
+/// that pile up, as on a floor, have no end.
+const IMPACTS_A_BODY: usize = 10;
+
+/// Share of a step below which two instants are one.
+const INSTANT: f64 = 1e-13;
+
+/// Each step goes to the first event on its path, and on from there.
+///
+/// The paths are cubics through both ends of the step; at the event the integrator takes a step
+/// of just that length, so that its order holds through impacts up to 4.
+#[derive(Debug, Clone, Default)]
+pub struct Sweep {
+    start: Vec<Particle>,
+    paths: Vec<Path>,
+    travel: Vec<f64>,
+}
+
+/// What comes first.
+#[derive(Debug, Clone, Copy)]
+struct Next {
+    time: f64,
+    kind: EventKind,
+}
+
+impl Handling for Sweep {
+    fn step(
+        &mut self,
+        motion: &mut impl Motion,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut impl Observer,
+    ) -> Taken {
+        let mut taken = Taken::default();
+        let mut left = dt;
+        let mut impacts = IMPACTS_A_BODY * particles.len();
+        loop {
+            self.start.clear();
+            self.start.extend_from_slice(particles);
+            taken.passes += motion.advance(phases, particles, left);
+            self.follow(phases, particles, left);
+            if phases.contact.is_some() {
+                taken.pairs += pairs(particles.len() as u64);
+            }
+            let Some(next) = self.first(phases, left, INSTANT * dt) else {
+                return taken;
+            };
+            if impacts == 0 {
+                phases.settle::<true>(particles, observer);
+                motion.forget();
+                return taken;
+            }
+            impacts -= 1;
+            particles.clone_from_slice(&self.start);
+            motion.forget();
+            if next.time > 0.0 {
+                taken.passes += motion.advance(phases, particles, next.time);
+                left -= next.time;
+            }
+            happen(next.kind, phases, particles, left, observer);
+            if phases.damped {
+                motion.forget();
+            }
+        }
+    }
+}
+
+impl Sweep {
+    /// The paths from the start of the step to where the particles are now.
+    fn follow(&mut self, phases: &Phases, particles: &[Particle], length: f64) {
+        let ends = self.start.iter().zip(particles);
+        self.paths.clear();
+        self.paths.extend(ends.map(|(start, end)| {
+            if phases.bends {
+                Path::between(start, end, length)
+            } else {
+                Path::straight(start, length)
+            }
+        }));
+        self.travel.clear();
+        self.travel.extend(self.paths.iter().map(Path::travel));
+    }
+
+    /// The first event on the paths; of simultaneous ones contacts, then cushions, then rests.
+    fn first(&self, phases: &Phases, length: f64, instant: f64) -> Option<Next> {
+        let mut first: Option<Next> = None;
+        let mut offer = |time: Option<f64>, kind: EventKind| {
+            if let Some(time) = time
+                && first.is_none_or(|first| time < first.time - instant)
+            {
+                first = Some(Next { time, kind });
+            }
+        };
+        if phases.contact.is_some() {
+            for a in 0..self.paths.len() {
+                for b in a + 1..self.paths.len() {
+                    offer(
+                        self.contact(a, b, length, instant),
+                        EventKind::Contact { a, b },
+                    );
+                }
+            }
+        }
+        if let Some(cushions) = &phases.cushions {
+            let half = cushions.half_extents();
+            for body in 0..self.paths.len() {
+                for wall in Wall::ALL {
+                    let time = self.cushion(body, wall, half, length, instant);
+                    offer(time, EventKind::Cushion { body, wall });
+                }
+            }
+        }
+        if let Some(rest) = phases.rest {
+            for (body, path) in self.paths.iter().enumerate() {
+                offer(slowed(path, rest.speed, length), EventKind::Rest { body });
+            }
+        }
+        first
+    }
+
+    fn contact(&self, a: usize, b: usize, length: f64, instant: f64) -> Option<f64> {
+        let (one, other) = (&self.paths[a], &self.paths[b]);
+        let reach = self.start[a].radius + self.start[b].radius;
+        let apart = self.start[b].position - self.start[a].position;
+        let room = reach + self.travel[a] + self.travel[b];
+        if apart.norm_squared() > room * room {
+            return None;
+        }
+        let bend = one.bend_against(other);
+        closing(length, instant, |t| {
+            let ((xa, va), (xb, vb)) = (one.at(t), other.at(t));
+            let distance = (xb - xa).norm();
+            Opening {
+                width: distance - reach,
+                rate: approach(&(xa - xb), distance, &va, &vb),
+                bend,
+            }
+        })
+    }
+
+    fn cushion(
+        &self,
+        body: usize,
+        wall: Wall,
+        half: [f64; 3],
+        length: f64,
+        instant: f64,
+    ) -> Option<f64> {
+        let (axis, side) = wall.axis_and_side();
+        let (path, start) = (&self.paths[body], &self.start[body]);
+        let room = half[axis] - start.radius;
+        if room - start.position[axis] * side > self.travel[body] {
+            return None;
+        }
+        let bend = path.bend_along(axis);
+        closing(length, instant, |t| {
+            let (x, v) = path.at(t);
+            Opening {
+                width: room - x[axis] * side,
+                rate: -v[axis] * side,
+                bend,
+            }
+        })
+    }
+}
+
+/// The first time at which a gap closes, none if it does not up to the end.
+fn closing(length: f64, instant: f64, at: impl Fn(f64) -> Opening<f64>) -> Option<f64> {
+    let mut from = 0.0;
+    // A search rests after two hundred steps, each of them safe; a second round is for grazes.
+    for _ in 0..2 {
+        match first_closing(length - from, instant, |t| at(from + t)) {
+            Search::Closes(time) if from + time <= length => return Some(from + time),
+            Search::OpenUntil(time) => from += time,
+            Search::Closes(_) | Search::Open => return None,
+        }
+    }
+    None
+}
+
+/// When a moving body has become slower than that.
+fn slowed(path: &Path, speed: f64, until: f64) -> Option<f64> {
+    let at = |t: f64| length(&path.at(t).1);
+    if at(0.0) == 0.0 || at(until) >= speed {
+        return None;
+    }
+    if at(0.0) < speed {
+        return Some(0.0);
+    }
+    let (mut fast, mut slow) = (0.0, until);
+    for _ in 0..60 {
+        let middle = 0.5 * (fast + slow);
+        if at(middle) < speed {
+            slow = middle;
+        } else {
+            fast = middle;
+        }
+    }
+    Some(slow)
+}
+
+/// Lets an event happen to the particles, `left` before the end of the step.
+fn happen(
+    kind: EventKind,
+    phases: &Phases,
+    particles: &mut [Particle],
+    left: f64,
+    observer: &mut impl Observer,
+) {
+    let impulse = match kind {
+        EventKind::Contact { a, b } => {
+            let (head, tail) = particles.split_at_mut(b);
+            phases
+                .contact
+                .and_then(|contact| hit(&mut head[a], &mut tail[0], contact.restitution))
+        }
+        EventKind::Cushion { body, wall } => phases.cushions.and_then(|cushions| {
+            let (axis, side) = wall.axis_and_side();
+            cushions::mirror(&mut particles[body], axis, side, cushions.restitution)
+        }),
+        EventKind::Rest { body } => Some(stop(&mut particles[body])),
+    };
+    if let Some(impulse) = impulse {
+        observer.note_before_end(kind, impulse, left);
+    }
+    let Some(rest) = phases.rest else { return };
+    let (first, second) = kind.bodies();
+    for body in std::iter::once(first).chain(second) {
+        let speed = length(&particles[body].velocity);
+        if speed > 0.0 && speed < rest.speed {
+            let impulse = stop(&mut particles[body]);
+            observer.note_before_end(EventKind::Rest { body }, impulse, left);
+        }
+    }
+}
+
+fn stop(particle: &mut Particle) -> f64 {
+    let impulse = particle.mass * length(&particle.velocity);
+    particle.velocity = Vector3::zeros();
+    impulse
+}
