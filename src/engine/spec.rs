@@ -37,6 +37,8 @@ pub enum Integrator {
     VelocityVerlet,
     /// Four stages. Order 4.
     RungeKutta4,
+    /// Seven stages and steps by their own error, swept impacts. Order 5 in the longest step.
+    DormandPrince,
 }
 
 /// How drag acts in the hand-written solver.
@@ -87,15 +89,17 @@ impl ImpulseSettings {
             Integrator::SymplecticEuler => 1,
             Integrator::VelocityVerlet => 2,
             Integrator::RungeKutta4 => 4,
+            Integrator::DormandPrince => 5,
         }
     }
 
-    /// Order in the step through impacts: overlaps are found up to a step late.
+    /// Order in the step through impacts: overlaps are found up to a step late, and the paths on
+    /// which impacts are swept are cubics.
     #[must_use]
     pub fn order_through_impacts(self) -> u8 {
         match self.impacts {
             Impacts::Overlap | Impacts::OverlapInPlace => 1,
-            Impacts::Swept => self.order(),
+            Impacts::Swept => self.order().min(4),
         }
     }
 
@@ -104,6 +108,7 @@ impl ImpulseSettings {
             Integrator::SymplecticEuler => "Symplectic Euler",
             Integrator::VelocityVerlet => "Velocity Verlet",
             Integrator::RungeKutta4 => "Runge-Kutta of order 4",
+            Integrator::DormandPrince => "Dormand-Prince 5(4) with steps by their own error",
         };
         let drag = match self.drag {
             DragRule::Force => "",
@@ -363,6 +368,11 @@ pub fn engines() -> Vec<EngineSpec> {
             "swept-4",
             "Runge-Kutta of order 4 with impacts at their time",
             rung(Integrator::RungeKutta4, DragRule::Force, Impacts::Swept),
+        ),
+        row(
+            "adaptive",
+            "Dormand-Prince 5(4), steps by their own error, impacts at their time",
+            rung(Integrator::DormandPrince, DragRule::Force, Impacts::Swept),
         ),
     ]
 }

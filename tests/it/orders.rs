@@ -144,6 +144,16 @@ fn rungs_converge_as_stated_where_nothing_collides() {
     }
 }
 
+/// The tolerance of the adaptive rung is the fifth power of the step asked for; how much of it
+/// an end gets is for the scene, so that the slope is looser.
+#[test]
+fn the_adaptive_rung_follows_its_tolerance() {
+    for scene in [orbit(), damped()] {
+        let found = order("adaptive", &[scene], &[2, 4, 8, 16, 32]);
+        assert!((4.0..6.0).contains(&found), "{found}");
+    }
+}
+
 /// Drag alone: `x = x0 + v0 (1 - exp(-c t))/c`. The lecture is of order 1, the decay exact.
 #[test]
 fn exact_drag_is_exact() {

@@ -1,5 +1,6 @@
 //! The rungs: which integrator and which way to deal with impacts a row of settings means.
 
+use super::dormand_prince::DormandPrince;
 use super::handling::Overlap;
 use super::motion::{Euler, Verlet};
 use super::phases::Phases;
@@ -42,6 +43,10 @@ pub fn simulation(
         (Integrator::SymplecticEuler, DragRule::Exponential) => rung!(Euler<true>),
         (Integrator::VelocityVerlet, _) => rung!(Verlet),
         (Integrator::RungeKutta4, _) => rung!(RungeKutta),
+        // Only the sweep takes steps of an integrator's own choice.
+        (Integrator::DormandPrince, _) => Box::new(
+            ImpulseSimulation::<DormandPrince, Sweep>::with(scene, grid, drag),
+        ),
     }
 }
 
@@ -50,7 +55,6 @@ pub fn simulation(
 pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let phases = Phases::of(scene, settings.drag);
     let swept = settings.impacts == Impacts::Swept;
-    let present = |present: bool, name, method: String| present.then(|| Phase::new(name, method));
     let forces = [
         present(phases.forces, "clear", "forces to zero".to_owned()),
         present(
@@ -70,40 +74,7 @@ pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
         ),
         present(phases.gravity.is_some(), "gravity", "force m g".to_owned()),
     ];
-    let drift = if phases.decay.is_some() {
-        "x += v (1 - exp(-c dt))/c, v *= exp(-c dt), c = k/m"
-    } else {
-        "x += dt v"
-    };
-    let motion = match settings.integrator {
-        Integrator::SymplecticEuler => [
-            present(phases.forces, "kick", "v += dt F/m".to_owned()),
-            present(true, "drift", format!("{drift} (symplectic Euler)")),
-            None,
-        ],
-        Integrator::VelocityVerlet => [
-            present(
-                phases.forces,
-                "kick",
-                "v += dt/2 F/m, by the midpoint rule with dampers".to_owned(),
-            ),
-            present(true, "drift", drift.to_owned()),
-            present(
-                phases.forces,
-                "kick",
-                "the other half (velocity Verlet)".to_owned(),
-            ),
-        ],
-        Integrator::RungeKutta4 => [
-            present(
-                true,
-                "motion",
-                "four stages of all forces (Runge-Kutta)".to_owned(),
-            ),
-            None,
-            None,
-        ],
-    };
+    let motion = motion_phases(&phases, settings.integrator);
     let push = match settings.impacts {
         Impacts::Overlap => true,
         Impacts::OverlapInPlace | Impacts::Swept => false,
@@ -142,4 +113,54 @@ pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     ];
     let all = forces.into_iter().chain(motion).chain(met);
     all.flatten().collect()
+}
+
+fn present(present: bool, name: &'static str, method: String) -> Option<Phase> {
+    present.then(|| Phase::new(name, method))
+}
+
+fn motion_phases(phases: &Phases, integrator: Integrator) -> [Option<Phase>; 3] {
+    let drift = if phases.decay.is_some() {
+        "x += v (1 - exp(-c dt))/c, v *= exp(-c dt), c = k/m"
+    } else {
+        "x += dt v"
+    };
+    match integrator {
+        Integrator::SymplecticEuler => [
+            present(phases.forces, "kick", "v += dt F/m".to_owned()),
+            present(true, "drift", format!("{drift} (symplectic Euler)")),
+            None,
+        ],
+        Integrator::VelocityVerlet => [
+            present(
+                phases.forces,
+                "kick",
+                "v += dt/2 F/m, by the midpoint rule with dampers".to_owned(),
+            ),
+            present(true, "drift", drift.to_owned()),
+            present(
+                phases.forces,
+                "kick",
+                "the other half (velocity Verlet)".to_owned(),
+            ),
+        ],
+        Integrator::RungeKutta4 => [
+            present(
+                true,
+                "motion",
+                "four stages of all forces (Runge-Kutta)".to_owned(),
+            ),
+            None,
+            None,
+        ],
+        Integrator::DormandPrince => [
+            present(
+                true,
+                "motion",
+                "seven stages of all forces, steps by their own error".to_owned(),
+            ),
+            None,
+            None,
+        ],
+    }
 }

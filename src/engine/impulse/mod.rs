@@ -4,12 +4,13 @@
 //! `v += dt F/m`; drift `x += dt v`; rest; cushions; contacts. A phase that the scene does not
 //! call for is not there.
 //!
-//! The other rungs of the ladder change one numerical choice at a time: `motion` and
-//! `runge_kutta` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
+//! The other rungs of the ladder change one numerical choice at a time: `motion`,
+//! `runge_kutta` and `dormand_prince` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
 //! which of them a name means.
 
 mod contacts;
 mod cushions;
+mod dormand_prince;
 mod forces;
 mod handling;
 mod ladder;

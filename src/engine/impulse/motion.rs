@@ -11,6 +11,19 @@ pub(super) trait Motion {
 
     /// States were changed from outside.
     fn forget(&mut self) {}
+
+    /// The scene's size and duration, and the step asked for.
+    fn prepare(&mut self, _size: f64, _duration: f64, _longest: f64) {}
+
+    /// How much of the time left the next step should take.
+    fn length(&self, left: f64) -> f64 {
+        left
+    }
+
+    /// Whether the step just taken was too long for its error and must be taken again.
+    fn is_rejected(&self) -> bool {
+        false
+    }
 }
 
 /// Symplectic Euler, the lecture's: kick by all forces, then drift. Order 1.

@@ -39,10 +39,13 @@ impl ImpulseSimulation {
 #[allow(private_bounds, reason = "the rungs are made here alone")]
 impl<M: Motion + Default, H: Handling + Default> ImpulseSimulation<M, H> {
     pub(super) fn with(scene: &Scene, grid: StepGrid, drag: DragRule) -> Self {
+        let particles = particles(scene);
+        let mut motion = M::default();
+        motion.prepare(size(&particles), scene.duration, grid.step);
         Self {
-            particles: particles(scene),
+            particles,
             phases: Phases::of(scene, drag),
-            motion: M::default(),
+            motion,
             handling: H::default(),
             grid,
             sample: 0,
@@ -113,4 +116,14 @@ impl<M: Motion + Default, H: Handling + Default> Simulation for ImpulseSimulatio
     fn work(&self) -> Work {
         self.work
     }
+}
+
+/// A length of the size of the scene: that of the largest body, or of the box of all of them.
+fn size(particles: &[Particle]) -> f64 {
+    let largest = particles.iter().fold(0.0_f64, |most, p| most.max(p.radius));
+    let first = particles.first().map(|p| (p.position, p.position));
+    let boxed = particles.iter().fold(first, |corners, p| {
+        corners.map(|(low, high)| (low.inf(&p.position), high.sup(&p.position)))
+    });
+    largest.max(boxed.map_or(0.0, |(low, high)| (high - low).norm()))
 }

@@ -48,21 +48,29 @@ impl Handling for Sweep {
         let mut taken = Taken::default();
         let mut left = dt;
         let mut impacts = IMPACTS_A_BODY * particles.len();
-        loop {
+        while left > 0.0 {
+            let length = motion.length(left);
             self.start.clear();
             self.start.extend_from_slice(particles);
-            taken.passes += motion.advance(phases, particles, left);
-            self.follow(phases, particles, left);
+            taken.passes += motion.advance(phases, particles, length);
+            if motion.is_rejected() {
+                particles.clone_from_slice(&self.start);
+                motion.forget();
+                continue;
+            }
+            self.follow(phases, particles, length);
             if phases.contact.is_some() {
                 taken.pairs += pairs(particles.len() as u64);
             }
-            let Some(next) = self.first(phases, left, INSTANT * dt) else {
-                return taken;
+            let Some(next) = self.first(phases, length, INSTANT * dt) else {
+                left -= length;
+                continue;
             };
             if impacts == 0 {
                 phases.settle::<true>(particles, observer);
                 motion.forget();
-                return taken;
+                left -= length;
+                continue;
             }
             impacts -= 1;
             particles.clone_from_slice(&self.start);
@@ -76,6 +84,7 @@ impl Handling for Sweep {
                 motion.forget();
             }
         }
+        taken
     }
 }
 
@@ -97,6 +106,10 @@ impl Sweep {
 
     /// The first event on the paths; of simultaneous ones contacts, then cushions, then rests.
     fn first(&self, phases: &Phases, length: f64, instant: f64) -> Option<Next> {
+        if !self.travel.iter().all(|travel| travel.is_finite()) {
+            // Numbers beyond those of doubles meet nothing.
+            return None;
+        }
         let mut first: Option<Next> = None;
         let mut offer = |time: Option<f64>, kind: EventKind| {
             if let Some(time) = time
