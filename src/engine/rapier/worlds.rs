@@ -300,7 +300,7 @@ rapier_world!(double, PhysicsWorldDouble, rapier3d_f64, f64, DOUBLE);
 /// What a world holds beyond bodies.
 #[cfg(test)]
 #[derive(Debug, PartialEq, Eq)]
-struct Extras {
+pub(super) struct Extras {
     joints: usize,
     multibody_joints: usize,
     colliders: usize,
