@@ -1,6 +1,7 @@
 //! The command line: clap types, one file a subcommand.
 
 mod args;
+mod effects;
 mod output;
 mod plan;
 mod report;
@@ -28,6 +29,8 @@ enum Command {
     Run(run::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
+    /// Switch each effect of a scene, one at a time: what it costs, and what it changes
+    Effects(effects::Args),
     /// List, show, start or generate scenes
     Scenes(scenes::Args),
 }
@@ -53,6 +56,7 @@ fn dispatch(command: Command) -> Result<()> {
         Command::Report(args) => report::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Effects(args) => effects::run(&args),
         Command::Scenes(args) => scenes::run(&args),
     }
 }

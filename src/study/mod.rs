@@ -1,9 +1,13 @@
 //! The questions that need many runs.
 
+mod effects;
+mod price;
 mod side_by_side;
 mod summary;
 mod tracks;
 
+pub use effects::{Change, Difference, Effect, EffectRow, EffectStudy, NeverFelt, effects};
+pub use price::Price;
 pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};
 pub use tracks::{Track, track};

@@ -7,6 +7,7 @@ mod closed_forms;
 mod command_line;
 mod controls;
 mod departures;
+mod effects;
 mod exact_flight;
 mod exact_forces;
 #[cfg(feature = "rapier")]

@@ -148,6 +148,35 @@ macro_rules! rapier_world {
                     }
                 }
 
+                /// What the world holds beyond bodies, by name; none of it is there unasked.
+                #[cfg(test)]
+                pub fn extras(&self) -> super::Extras {
+                    let world = &self.world;
+                    let no_events = |collider: &Collider| {
+                        collider.active_events().is_empty()
+                            && collider.active_hooks().is_empty()
+                            && collider.contact_skin() == 0.0
+                    };
+                    super::Extras {
+                        joints: world.impulse_joints.len(),
+                        multibody_joints: world.multibody_joints.iter().count(),
+                        colliders: world.colliders.len(),
+                        listening: world
+                            .colliders
+                            .iter()
+                            .filter(|(_, collider)| !no_events(collider))
+                            .count(),
+                        swept: world
+                            .bodies
+                            .iter()
+                            .filter(|(_, body)| {
+                                body.is_ccd_enabled() || body.soft_ccd_prediction() != 0.0
+                            })
+                            .count(),
+                        falls: world.gravity != Vector::ZERO,
+                    }
+                }
+
                 fn party(&self, collider: ColliderHandle) -> usize {
                     self.world.colliders[collider].user_data as usize
                 }
@@ -267,3 +296,78 @@ macro_rules! rapier_world {
 
 rapier_world!(single, PhysicsWorldSingle, rapier3d, f32, SINGLE);
 rapier_world!(double, PhysicsWorldDouble, rapier3d_f64, f64, DOUBLE);
+
+/// What a world holds beyond bodies.
+#[cfg(test)]
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Extras {
+    joints: usize,
+    multibody_joints: usize,
+    colliders: usize,
+    /// Colliders with events, hooks, or a margin that predicts contacts.
+    listening: usize,
+    /// Bodies with continuous collision detection of their own, or its soft prediction.
+    swept: usize,
+    falls: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::world::World;
+    use super::{Double, Extras, Layout, Single};
+    use crate::engine::{EngineKind, engine};
+    use crate::recording::initial_states;
+
+    /// Two balls; contact, walls, springs and gravity by the bits.
+    fn extras(name: &str, declared: usize) -> Extras {
+        let has = |bit: usize| declared & (1 << bit) != 0;
+        let effects = [
+            "[effects.contact]\nrestitution=0.5\n",
+            "[effects.cushions]\nhalf_width=9\nhalf_length=9\nrestitution=1\n",
+            "[[effects.springs]]\nbetween=['a','b']\nstiffness=9\nrest_length=1\ndamping=1\n",
+            "[effects.gravity]\nacceleration=[0,-9.81,0]\n",
+        ];
+        let effects = effects.iter().enumerate().filter(|(bit, _)| has(*bit));
+        let effects: String = effects.map(|(_, text)| *text).collect();
+        let text = format!(
+            "name='x'\nduration=1\nsample_every=0.5\n\
+             [[bodies]]\nname='a'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[1,0,0]\n\
+             [[bodies]]\nname='b'\nmass=1\nradius=1\nposition=[5,0,0]\nvelocity=[0,0,0]\n\
+             {effects}"
+        );
+        let scene = crate::scene::parse(&text, "x").unwrap();
+        let EngineKind::Rapier(settings) = engine(name).unwrap().kind else {
+            panic!("{name} is no Rapier world")
+        };
+        let layout = Layout::new(&scene, &settings, 0.01).unwrap();
+        let states = initial_states(&scene);
+        if name == "rapier" {
+            Single::build(&layout, &states).extras()
+        } else {
+            Double::build(&layout, &states).extras()
+        }
+    }
+
+    /// No joints, events, hooks, continuous detection or margins where nothing calls for them;
+    /// no colliders at all where nothing touches, so that nothing is predicted either.
+    #[test]
+    fn a_world_holds_what_its_scene_calls_for_and_nothing_else() {
+        for name in ["rapier", "rapier-f64", "rapier-matched"] {
+            let native = name != "rapier-matched";
+            for declared in 0..16 {
+                let [contact, walls, springs, gravity] =
+                    [1, 2, 4, 8].map(|bit: usize| declared & bit != 0);
+                let balls = if contact || walls { 2 } else { 0 };
+                let expected = Extras {
+                    joints: usize::from(springs && native),
+                    multibody_joints: 0,
+                    colliders: balls + if walls { 4 } else { 0 },
+                    listening: 0,
+                    swept: 0,
+                    falls: gravity && native,
+                };
+                assert_eq!(extras(name, declared), expected, "{name} {declared:04b}");
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Forces, joints, plans, and the life of a world.
 
 use carom::engine::{engine, notes, plan, prepare, versions, warnings};
-use carom::scene::{Attraction, Contact, Drag, Gravity, LengthUnit, Scene};
+use carom::scene::{Attraction, Contact, Drag, Gravity, LengthUnit, Rest, Scene};
 
 use super::{RAPIER, body, box_of, head_on, last, run, scene, spring};
 
@@ -151,6 +151,67 @@ fn the_plan_has_a_phase_for_what_the_scene_declares_and_nothing_else() {
         "restitution",
     ];
     assert_eq!(names(&scene, "rapier-matched"), matched);
+}
+
+/// Whatever a scene declares: no joint without springs, nothing detected, solved or swept without
+/// something to touch, and no phase for an effect that is not there.
+#[test]
+fn no_combination_of_effects_has_a_phase_that_it_does_not_call_for() {
+    let bodies = vec![body("a", 1.0, 0.1, 0.0, 1.0), body("b", 1.0, 0.1, 5.0, 0.0)];
+    for declared in 0..1 << 7 {
+        let has = |bit: usize| declared & (1 << bit) != 0;
+        let [contact, cushions, drag, rest, attraction, gravity, springs] =
+            [0, 1, 2, 3, 4, 5, 6].map(has);
+        let mut scene = scene(1.0, bodies.clone());
+        let effects = &mut scene.effects;
+        effects.contact = contact.then_some(Contact { restitution: 0.5 });
+        effects.cushions = cushions.then(|| box_of(9.0, 0.5));
+        effects.drag = drag.then_some(Drag { coefficient: 0.1 });
+        effects.rest = rest.then_some(Rest { speed: 0.1 });
+        effects.attraction = attraction.then_some(Attraction {
+            constant: 1.0,
+            softening: 0.0,
+        });
+        effects.gravity = gravity.then_some(Gravity {
+            acceleration: [0.0, -9.81, 0.0],
+        });
+        if springs {
+            effects.springs = spring(30.0, 1.0, 0.2);
+        }
+        for name in RAPIER {
+            let plan = plan(&scene, &engine(name).unwrap(), 0.01).unwrap();
+            let phases: Vec<_> = plan.phases.iter().map(|phase| phase.name).collect();
+            let native = name != "rapier-matched";
+            let touches = contact || cushions;
+            let expected = [
+                ("attraction", attraction),
+                ("drag", drag),
+                ("springs", springs),
+                ("gravity", gravity),
+                ("detection", touches),
+                ("contacts", contact),
+                ("cushions", cushions),
+                ("restitution", touches),
+                ("sweep", cushions && native),
+                ("rest", rest),
+                ("drift", true),
+            ];
+            let what = format!("{name} {declared:07b}: {phases:?}");
+            for (phase, expected) in expected {
+                let count = phases.iter().filter(|name| **name == phase).count();
+                assert_eq!(count, usize::from(expected), "{phase} in {what}");
+            }
+            let known = |name: &&str| *name == "kick" || expected.iter().any(|(n, _)| n == name);
+            assert!(phases.iter().all(known), "{what}");
+            let joints = plan.phases.iter().any(|p| p.method.contains("joint"));
+            assert_eq!(joints, springs && native, "{what}");
+            if !touches {
+                let words = ["prediction", "closer than", "collision", "substep of soft"];
+                let said = format!("{:?}", plan.phases);
+                assert!(!words.iter().any(|word| said.contains(word)), "{what}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,85 @@
+//! `carom effects`: what each effect of a scene costs, and what it changes.
+
+use std::path::PathBuf;
+
+use super::args::{EngineArgs, LibraryArgs};
+use super::output::{say, spinner, warn};
+use crate::case::scene_or_case;
+use crate::error::{Error, Result};
+use crate::report::{Folder, effects_findings, effects_table, write_effects};
+use crate::study::{Change, effects};
+
+/// Repetitions beyond this are a slip of the pen.
+const REPETITIONS_MAX: usize = 10_000;
+
+/// The engines unless others are asked for; the exact ones may take long, once for each effect.
+const DEFAULT: [&str; 4] = ["lecture", "rapier", "rapier-f64", "rapier-matched"];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// A scene file, or the name of a case
+    scene: String,
+    #[command(flatten)]
+    engines: EngineArgs,
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// Timed repetitions of each row
+    #[arg(long, value_name = "N", default_value_t = 11)]
+    repetitions: usize,
+    /// Folder for the files [default: runs/effects-<scene>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// Print JSON instead of the table
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    if !(1..=REPETITIONS_MAX).contains(&args.repetitions) {
+        return Err(Error::Argument {
+            argument: "repetitions",
+            found: args.repetitions.to_string(),
+            remedy: format!("give 1 to {REPETITIONS_MAX}"),
+        });
+    }
+    let specs = args.engines.specs(&DEFAULT)?;
+    let case = scene_or_case(&args.scene, &args.library.library())?;
+    let scene = &case.scene;
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(format!("effects-{}", scene.name)));
+    for warning in scene.warnings() {
+        warn(warning);
+    }
+    args.engines.prepare(scene, &specs)?;
+    let folder = Folder::open(&out)?;
+    let bar = spinner(&scene.name, args.quiet);
+    let study = effects(scene, &specs, args.engines.dt, args.repetitions)?;
+    write_effects(&folder, &study)?;
+    bar.finish_and_clear();
+    let unchanged = study
+        .rows
+        .iter()
+        .filter(|row| row.change == Change::Unchanged);
+    for row in unchanged.filter(|row| row.outcome != "Finished") {
+        warn(format_args!("{}: {}", row.engine, row.outcome_text));
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return say(serde_json::to_string_pretty(&study)?);
+    }
+    say(effects_table(&study))?;
+    for finding in effects_findings(&study) {
+        say(finding)?;
+    }
+    say(format_args!(
+        "Written to {}",
+        folder.path().join("README.md").display()
+    ))
+}
