@@ -1,6 +1,7 @@
 //! The command line: clap types, one file a subcommand.
 
 mod args;
+mod cost;
 mod output;
 mod plan;
 mod report;
@@ -26,6 +27,8 @@ enum Command {
     Report(report::Args),
     /// Run one scene on some engines and write what they did
     Run(run::Args),
+    /// Run scenes on every engine over a ladder of steps: what does accuracy cost in time?
+    Cost(cost::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
     /// List, show, start or generate scenes
@@ -52,6 +55,7 @@ fn dispatch(command: Command) -> Result<()> {
     match command {
         Command::Report(args) => report::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Cost(args) => cost::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Scenes(args) => scenes::run(&args),
     }

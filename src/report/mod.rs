@@ -3,6 +3,7 @@
 mod case_page;
 #[cfg(feature = "plots")]
 pub mod chart;
+mod cost;
 mod files;
 mod format;
 mod index_page;
@@ -13,6 +14,7 @@ mod tables;
 mod template;
 
 pub use case_page::findings;
+pub use cost::{CostReport, write_cost};
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};
 pub use index_page::{index_page, write_index};

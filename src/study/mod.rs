@@ -1,5 +1,6 @@
 //! The questions that need many runs.
 
+pub mod cost;
 mod side_by_side;
 mod summary;
 mod tracks;

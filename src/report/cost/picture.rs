@@ -1,0 +1,76 @@
+//! The work-precision picture of a scene.
+
+use crate::error::{Error, Result};
+use crate::report::chart::{COLOR_COUNT, LineStyle, WorkCurve, WorkFigure, WorkPoint, work};
+use crate::report::engineering;
+use crate::study::cost::{CostPoint, EngineCost, SceneCost, pareto_front};
+
+/// Draws price over error of every engine.
+pub(super) fn work_precision_png(cost: &SceneCost) -> Result<Vec<u8>> {
+    work(&figure(cost)).map_err(|wrong| Error::Picture {
+        name: "work-precision",
+        message: wrong.to_string(),
+    })
+}
+
+/// Error and price of a point that has both.
+fn pair(point: &CostPoint) -> Option<[f64; 2]> {
+    Some([point.error()?, point.cost()?])
+}
+
+fn figure(cost: &SceneCost) -> WorkFigure {
+    let scene = &cost.scene;
+    let unit = scene.units.length.symbol();
+    let engines = cost.engines.iter().enumerate();
+    let curves = engines.map(|(place, engine)| curve(cost, place, engine));
+    let all: Vec<[f64; 2]> = cost.points.iter().filter_map(pair).collect();
+    let front = pareto_front(&all).into_iter().map(|place| all[place]);
+    let until = cost.compared_until.map_or_else(
+        || "against each one's own finest step".to_owned(),
+        |until| format!("up to {} s", engineering(until)),
+    );
+    let sensitivity = cost.sensitivity.as_ref();
+    WorkFigure {
+        title: scene.heading().to_owned(),
+        subtitle: format!("what accuracy costs: steps dt beside the points, errors {until}"),
+        x_label: if unit.is_empty() {
+            "largest position error".to_owned()
+        } else {
+            format!("largest position error [{unit}]")
+        },
+        y_label: "ms per simulated second".to_owned(),
+        curves: curves.collect(),
+        front: front.collect(),
+        enough: sensitivity.map(|off| {
+            let moved = format!("{} {unit}", engineering(off.moved));
+            let label = format!("a ball placed {} off does this", moved.trim_end());
+            (off.distance, label)
+        }),
+    }
+}
+
+fn curve(cost: &SceneCost, place: usize, engine: &EngineCost) -> WorkCurve {
+    let name = &engine.spec.name;
+    let label = |point: &CostPoint| {
+        point
+            .dt
+            .map_or(String::new(), |dt| format!("{} s", engineering(dt)))
+    };
+    let point = |point: &CostPoint| {
+        let [error, price] = pair(point)?;
+        Some(WorkPoint {
+            error,
+            price,
+            label: label(point),
+        })
+    };
+    let others = cost.points.iter();
+    let others = others.filter(|point| point.engine == *name && !point.is_stock());
+    WorkCurve {
+        label: name.clone(),
+        color: place,
+        line: LineStyle::of_voice(place / COLOR_COUNT),
+        points: cost.stock(name).filter_map(point).collect(),
+        others: others.filter_map(pair).collect(),
+    }
+}
