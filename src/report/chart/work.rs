@@ -354,6 +354,7 @@ fn overlap(a: &Frame, b: &Frame) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::testing::decode;
+    use super::super::text::register;
     use super::*;
 
     fn point(error: f64, price: f64) -> WorkPoint {
@@ -384,6 +385,7 @@ mod tests {
 
     #[test]
     fn points_land_on_their_decades() {
+        register().unwrap();
         let figure = figure(vec![point(10.0, 1.0), point(0.1, 10.0)]);
         let plot = layout(&figure, 100.0).unwrap();
         let [[left, above], [right, below]] =

@@ -13,18 +13,32 @@ pub(super) fn work_precision_png(cost: &SceneCost) -> Result<Vec<u8>> {
     })
 }
 
-/// Error and price of a point that has both.
-fn pair(point: &CostPoint) -> Option<[f64; 2]> {
-    Some([point.error()?, point.cost()?])
+/// Error and price of a point that has both; the error no smaller than the picture shows.
+fn pair(point: &CostPoint, least: f64) -> Option<[f64; 2]> {
+    Some([point.error()?.max(least), point.cost()?])
+}
+
+/// The smallest error that is shown: a decade below that of any step, so that an engine without
+/// steps, whose error is rounding, does not squeeze all others to the side.
+fn least_shown(cost: &SceneCost) -> f64 {
+    let stepping = cost.points.iter().filter(|point| point.dt.is_some());
+    let positive = stepping
+        .filter_map(CostPoint::error)
+        .filter(|error| *error > 0.0);
+    positive.reduce(f64::min).map_or(0.0, |error| 0.1 * error)
 }
 
 fn figure(cost: &SceneCost) -> WorkFigure {
     let scene = &cost.scene;
     let unit = scene.units.length.symbol();
     let engines = cost.engines.iter().enumerate();
-    let curves = engines.map(|(place, engine)| curve(cost, place, engine));
-    let all: Vec<[f64; 2]> = cost.points.iter().filter_map(pair).collect();
-    let front = pareto_front(&all).into_iter().map(|place| all[place]);
+    let least = least_shown(cost);
+    let curves = engines.map(|(place, engine)| curve(cost, place, engine, least));
+    let points = cost.points.iter();
+    let (exact, all): (Vec<_>, Vec<_>) = points
+        .filter_map(|point| Some((pair(point, 0.0)?, pair(point, least)?)))
+        .unzip();
+    let front = pareto_front(&exact).into_iter().map(|place| all[place]);
     let until = cost.compared_until.map_or_else(
         || "against each one's own finest step".to_owned(),
         |until| format!("up to {} s", engineering(until)),
@@ -49,15 +63,18 @@ fn figure(cost: &SceneCost) -> WorkFigure {
     }
 }
 
-fn curve(cost: &SceneCost, place: usize, engine: &EngineCost) -> WorkCurve {
+fn curve(cost: &SceneCost, place: usize, engine: &EngineCost, least: f64) -> WorkCurve {
     let name = &engine.spec.name;
-    let label = |point: &CostPoint| {
-        point
-            .dt
-            .map_or(String::new(), |dt| format!("{} s", engineering(dt)))
+    let unit = cost.scene.units.length.symbol();
+    let label = |point: &CostPoint| match (point.dt, point.error()) {
+        (Some(dt), _) => format!("{} s", engineering(dt)),
+        (None, Some(error)) if error < least => format!("← {} {unit}", engineering(error))
+            .trim_end()
+            .to_owned(),
+        (None, _) => String::new(),
     };
     let point = |point: &CostPoint| {
-        let [error, price] = pair(point)?;
+        let [error, price] = pair(point, least)?;
         Some(WorkPoint {
             error,
             price,
@@ -71,6 +88,6 @@ fn curve(cost: &SceneCost, place: usize, engine: &EngineCost) -> WorkCurve {
         color: place,
         line: LineStyle::of_voice(place / COLOR_COUNT),
         points: cost.stock(name).filter_map(point).collect(),
-        others: others.filter_map(pair).collect(),
+        others: others.filter_map(|point| pair(point, least)).collect(),
     }
 }

@@ -1,10 +1,10 @@
 //! What errors are measured against, and the errors.
 
-use crate::compare::{Metrics, Sizes, compare_events, metrics};
+use crate::compare::{Metrics, Sizes, compare_events, horizon, metrics};
 use crate::engine::{EngineSpec, engine, prepare, record};
 use crate::error::{Error, Result};
 use crate::physics::BodyState;
-use crate::recording::{Recording, initial_states};
+use crate::recording::{Recording, Undetermined, initial_states};
 use crate::scene::Scene;
 
 /// A recording that others are measured against.
@@ -62,6 +62,25 @@ impl Reference {
         } else {
             Err("exact certifies no sample past the start".to_owned())
         })
+    }
+
+    /// Vouches for nothing from where another recording, which knows no better, is farther away
+    /// than a tolerance: the horizon. At least the first sample stays.
+    pub fn cut_where(&mut self, scene: &Scene, twin: &Recording, tolerance: f64) {
+        let twins = std::slice::from_ref(twin);
+        let Some(time) = horizon(scene, &self.recording, twins, tolerance) else {
+            return;
+        };
+        let time = time.max(scene.sample_time(2));
+        let known = self.recording.undetermined.as_ref();
+        if known.is_none_or(|known| known.time > time) {
+            self.recording.undetermined = Some(Undetermined {
+                time,
+                bodies: Vec::new(),
+                spread: None,
+            });
+            self.comparable = self.recording.comparable_samples(scene);
+        }
     }
 
     /// Time of the last sample that is compared, s.

@@ -44,8 +44,8 @@ pub fn scene_cost(
     let exact = Reference::exact(scene)?;
     let (taking_part, engines, refusals) = taking_part(scene, specs, options)?;
     let runs = runs(&taking_part, options);
-    let (mut notes, reference) = match exact {
-        Ok(reference) => (cut(scene, &reference), Some(reference)),
+    let (mut notes, mut reference) = match exact {
+        Ok(reference) => (Vec::new(), Some(reference)),
         Err(why) => (
             vec![format!(
                 "No common reference ({why}): errors are against each setting's own finest \
@@ -54,6 +54,15 @@ pub fn scene_cost(
             None,
         ),
     };
+    let off = reference
+        .as_mut()
+        .and_then(|known| sensitivity(scene, known));
+    if let Some(known) = &reference {
+        notes.extend(cut(scene, known));
+        if off.is_none() {
+            notes.push("What a misplaced ball does could not be computed.".to_owned());
+        }
+    }
     let errors = errors(scene, &runs, reference.as_ref(), watch)?;
     let sample = reference
         .as_ref()
@@ -64,12 +73,6 @@ pub fn scene_cost(
     };
     let (mut points, size) = errors;
     price(&mut points, &runs, stretch, options, watch)?;
-    let off = reference
-        .as_ref()
-        .and_then(|known| sensitivity(scene, known));
-    if reference.is_some() && off.is_none() {
-        notes.push("What a misplaced ball does could not be computed.".to_owned());
-    }
     Ok(SceneCost {
         scene: scene.clone(),
         size,
@@ -84,14 +87,15 @@ pub fn scene_cost(
 }
 
 /// Says so where the scene is compared only in part.
-fn cut(scene: &Scene, reference: &Reference) -> Vec<String> {
+fn cut(scene: &Scene, reference: &Reference) -> Option<String> {
     let all = reference.comparable > scene.sample_count();
     let until = reference.until(scene);
     let note = format!(
-        "Positions are compared until {until} s of {} s, as far as exact vouches for them.",
+        "Positions are compared until {until} s of {} s: up to the horizon, past which exact \
+         vouches for nothing or a ball placed a hair off changes everything.",
         scene.duration
     );
-    if all { Vec::new() } else { vec![note] }
+    (!all).then_some(note)
 }
 
 type TakingPart = (Vec<Contender>, Vec<EngineCost>, Vec<Refusal>);
