@@ -282,6 +282,20 @@ fn draw_notes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), C
     for at in figure.front.iter().filter_map(|point| plot.place(*point)) {
         taken.push(around(at, RING));
     }
+    let enough = figure.enough.as_ref();
+    if let Some(share) = enough.and_then(|(error, _)| plot.errors.share(*error)) {
+        let x = plot.frame.x(share);
+        taken.push(Frame {
+            left: x - 4.0,
+            right: x + 4.0,
+            ..plot.frame
+        });
+        // The name of the line.
+        taken.push(Frame {
+            bottom: plot.frame.top + 2.0 * NOTE_PX,
+            ..plot.frame
+        });
+    }
     for ends in [true, false] {
         for curve in &figure.curves {
             let all: Vec<_> = places(curve, plot).collect();

@@ -102,9 +102,10 @@ impl SceneCost {
         stepping.map(|engine| verdict(&engine.spec)).collect()
     }
 
-    /// A plateau as large as the scene is no model but a scene past all comparing.
+    /// A plateau of errors that are not small is no model yet: the steps are still too large to
+    /// tell the same story as the reference.
     fn sober(&self, limit: Limit) -> Limit {
-        let lost = limit.kind == Remainder::Model && limit.finest > 0.5 * self.size;
+        let lost = limit.kind == Remainder::Model && limit.finest > SMALL * self.size;
         Limit {
             kind: if lost {
                 Remainder::Unsettled

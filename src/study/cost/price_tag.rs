@@ -1,7 +1,7 @@
 //! The price tag: the cheapest way to an accuracy, and the accuracy for a price.
 
 use super::bootstrap::{Ratio, paired_ratio};
-use super::{CostPoint, SceneCost};
+use super::{CostPoint, Ending, SceneCost};
 use crate::scene::LengthUnit;
 
 /// Targets of scenes with a unit of length, m: 10, 1, 0.1 and 0.001 mm.
@@ -103,11 +103,8 @@ impl SceneCost {
         let keeps = |point: &&CostPoint| point.error().is_some_and(|error| error <= target);
         let ladders = self.ladders(engine).into_iter();
         let kept = ladders.flat_map(|ladder| {
-            let measured = ladder
-                .into_iter()
-                .rev()
-                .filter(|point| !point.is_over_budget());
-            measured.take_while(keeps)
+            let judged = ladder.into_iter().rev().filter(|point| is_judged(point));
+            judged.take_while(keeps)
         });
         smallest(kept, CostPoint::cost)
     }
@@ -125,6 +122,16 @@ impl SceneCost {
     }
 }
 
+/// Whether a point can keep or miss a target: not one that was never run, nor one that finished
+/// and has no error because it is itself what the others are measured against.
+fn is_judged(point: &CostPoint) -> bool {
+    match &point.ending {
+        Ending::OverBudget => false,
+        Ending::Ran(outcome) => !outcome.is_finished() || point.error().is_some(),
+        Ending::Refused(_) => true,
+    }
+}
+
 /// The point with the smallest value, of those that have one.
 fn smallest<'a>(
     points: impl Iterator<Item = &'a CostPoint>,
@@ -139,6 +146,7 @@ fn smallest<'a>(
 mod tests {
     use super::super::testing::study;
     use super::*;
+    use crate::recording::Outcome;
 
     #[test]
     fn targets_follow_the_unit() {
@@ -158,6 +166,17 @@ mod tests {
         assert_eq!(cost(&tags[0]), Some(2.0));
         assert_eq!(cost(&tags[1]), Some(8.0));
         assert_eq!(cost(&tags[2]), None);
+    }
+
+    /// Without a common reference the finest step has no error; it is no miss. A blow-up is.
+    #[test]
+    fn the_finest_step_is_no_miss_where_it_is_the_reference_but_a_blow_up_is() {
+        let mut study = study(&[("a", "stock", &[(2.0, 1.0), (0.5, 2.0), (0.0, 4.0)])]);
+        study.points[2].errors.position_max = None;
+        let cheapest = |study: &SceneCost| study.cheapest("a", 1.0).and_then(CostPoint::cost);
+        assert_eq!(cheapest(&study), Some(2.0));
+        study.points[2].ending = Ending::Ran(Outcome::NonFinite { time: 0.5, body: 0 });
+        assert_eq!(cheapest(&study), None);
     }
 
     #[test]
