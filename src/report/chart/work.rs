@@ -4,7 +4,7 @@ use super::ChartError;
 use super::axis::{Axis, extent, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
-use super::polyline::{Frame, Point, clipped};
+use super::polyline::{Frame, Point, clipped, dotted};
 use super::text::{shortened, width};
 use super::theme::{
     CANVAS, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET, SMALL_PX, color, mix,
@@ -296,6 +296,15 @@ fn draw_notes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), C
             ..plot.frame
         });
     }
+    // Small dots and lines are covered only where a label finds no other place.
+    let dots = figure.curves.iter().flat_map(|curve| &curve.others);
+    let dots = dots.filter_map(|point| Some(around(plot.place(*point)?, OTHER)));
+    let mut thin: Vec<Frame> = dots.collect();
+    for curve in &figure.curves {
+        let line: Vec<Point> = places(curve, plot).map(|(at, _)| at).collect();
+        let beads = dotted(&line, 0.0, 2.0 * OTHER).into_iter();
+        thin.extend(beads.map(|at| around(at, OTHER)));
+    }
     for ends in [true, false] {
         for curve in &figure.curves {
             let all: Vec<_> = places(curve, plot).collect();
@@ -315,7 +324,8 @@ fn draw_notes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), C
                     continue;
                 }
                 let wide = width(&point.label, NOTE_PX)?;
-                if let Some(free) = free(*at, wide, &plot.frame, &taken) {
+                let clear = free(*at, wide, &plot.frame, &[&taken[..], &thin].concat());
+                if let Some(free) = clear.or_else(|| free(*at, wide, &plot.frame, &taken)) {
                     let middle = f64::midpoint(free.top, free.bottom);
                     canvas.text(&point.label, [free.left, middle], look)?;
                     taken.push(free);

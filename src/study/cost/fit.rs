@@ -54,7 +54,7 @@ impl Window {
 /// Fits the order by least squares on log-log over the finest points within the window.
 ///
 /// `points` are (dt, error) in any order. Blank with fewer than four points, on a plateau, and
-/// where the interval is wider than ±0.5.
+/// where the interval is wider than ±0.5 or holds 0.
 #[must_use]
 pub fn fit_order(points: &[[f64; 2]], window: Window) -> OrderFit {
     let mut sorted = points.to_vec();
@@ -74,7 +74,7 @@ pub fn fit_order(points: &[[f64; 2]], window: Window) -> OrderFit {
     }
     let (slope, error) = slope(&usable);
     let half = STUDENT[count - POINTS_MIN] * error;
-    let meant = slope.abs() > FLAT && half <= VAGUE;
+    let meant = slope > FLAT && slope > half && half <= VAGUE;
     OrderFit {
         order: meant.then_some(Order {
             order: slope,
@@ -141,6 +141,8 @@ pub struct Limit {
     pub slope: Option<f64>,
     /// Error at the finest step.
     pub finest: f64,
+    /// Whether each of the finest steps errs less than the one before.
+    pub falls: bool,
 }
 
 /// Reads the limit from the four finest steps; none with fewer points.
@@ -157,6 +159,7 @@ pub fn limit(points: &[[f64; 2]], floor: f64) -> Option<Limit> {
             kind: Remainder::Rounding,
             slope: None,
             finest,
+            falls: false,
         });
     }
     if sorted.len() < LIMIT_POINTS {
@@ -185,6 +188,7 @@ pub fn limit(points: &[[f64; 2]], floor: f64) -> Option<Limit> {
         kind,
         slope: Some(slope),
         finest,
+        falls: logs.windows(2).all(|pair| pair[0][1] < pair[1][1]),
     })
 }
 
@@ -266,5 +270,7 @@ mod tests {
         assert_eq!(kind(&|dt| 1e-3 * dt.powi(4) + 1e-13), Remainder::Rounding);
         assert_eq!(kind(&|dt| 1.0 / dt), Remainder::Unsettled);
         assert_eq!(limit(&series(3, |dt| dt), 0.0), None);
+        let falls = |error: &dyn Fn(f64) -> f64| limit(&series(9, error), 0.0).unwrap().falls;
+        assert!(falls(&|dt| dt) && !falls(&|_| 1.0));
     }
 }

@@ -102,18 +102,16 @@ impl SceneCost {
         stepping.map(|engine| verdict(&engine.spec)).collect()
     }
 
-    /// A plateau of errors that are not small is no model yet: the steps are still too large to
-    /// tell the same story as the reference.
+    /// Errors that are not small tell nothing of the limit unless they fall from step to step:
+    /// the engine does not yet tell the same story as the reference.
     fn sober(&self, limit: Limit) -> Limit {
-        let lost = limit.kind == Remainder::Model && limit.finest > SMALL * self.size;
-        Limit {
-            kind: if lost {
-                Remainder::Unsettled
-            } else {
-                limit.kind
-            },
-            ..limit
-        }
+        let is_small = limit.finest <= SMALL * self.size;
+        let kind = match limit.kind {
+            Remainder::Model if !is_small => Remainder::Unsettled,
+            Remainder::Discretisation if !is_small && !limit.falls => Remainder::Unsettled,
+            kind => kind,
+        };
+        Limit { kind, ..limit }
     }
 
     /// (dt, error) of an engine as it comes.
