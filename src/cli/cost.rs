@@ -30,7 +30,7 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 5)]
     repetitions: usize,
     /// Work a run may take, in steps x (bodies + pairs)
-    #[arg(long, default_value_t = 2_000_000)]
+    #[arg(long, default_value_t = 1_000_000)]
     budget: u64,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
