@@ -318,7 +318,7 @@ fn draw_notes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), C
                 let wanted = if ends {
                     is_end
                 } else {
-                    !is_end && place % 3 == 0
+                    !is_end && place % 3 == 0 && place + 2 < all.len()
                 };
                 if !wanted || point.label.is_empty() {
                     continue;

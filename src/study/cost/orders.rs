@@ -51,6 +51,9 @@ const ROUNDINGS: f64 = 64.0;
 /// Errors above this share of the size are those of steps that are not small.
 const SMALL: f64 = 0.02;
 
+/// Large errors count as shrinking only if they fall at least about so steeply.
+const STEEP: f64 = 0.7;
+
 /// Rounding of one operation in the numbers that an engine computes with.
 fn epsilon(spec: &EngineSpec) -> f64 {
     match &spec.kind {
@@ -106,9 +109,10 @@ impl SceneCost {
     /// the engine does not yet tell the same story as the reference.
     fn sober(&self, limit: Limit) -> Limit {
         let is_small = limit.finest <= SMALL * self.size;
+        let is_steady = limit.falls && limit.slope > Some(STEEP);
         let kind = match limit.kind {
             Remainder::Model if !is_small => Remainder::Unsettled,
-            Remainder::Discretisation if !is_small && !limit.falls => Remainder::Unsettled,
+            Remainder::Discretisation if !is_small && !is_steady => Remainder::Unsettled,
             kind => kind,
         };
         Limit { kind, ..limit }
