@@ -35,22 +35,27 @@ impl EngineArgs {
 
     /// The engines asked for, or these of the ones this build has.
     pub fn specs(&self, default: &[&str]) -> Result<Vec<EngineSpec>> {
-        if self.names.is_empty() {
-            let built = engines().into_iter().filter(EngineSpec::is_built);
-            return Ok(built
-                .filter(|spec| default.contains(&spec.name.as_str()))
-                .collect());
-        }
-        let mut specs: Vec<EngineSpec> = Vec::new();
-        for name in &self.names {
-            let spec = engine(name.trim())?;
-            if specs.contains(&spec) {
-                return Err(Error::EngineTwice { name: spec.name });
-            }
-            specs.push(spec);
-        }
-        Ok(specs)
+        chosen(&self.names, default)
     }
+}
+
+/// The engines of these names; without names, those of `default` that this build has.
+pub(super) fn chosen(names: &[String], default: &[&str]) -> Result<Vec<EngineSpec>> {
+    if names.is_empty() {
+        let built = engines().into_iter().filter(EngineSpec::is_built);
+        return Ok(built
+            .filter(|spec| default.contains(&spec.name.as_str()))
+            .collect());
+    }
+    let mut specs: Vec<EngineSpec> = Vec::new();
+    for name in names {
+        let spec = engine(name.trim())?;
+        if specs.contains(&spec) {
+            return Err(Error::EngineTwice { name: spec.name });
+        }
+        specs.push(spec);
+    }
+    Ok(specs)
 }
 
 /// The engines that a report compares unless others are asked for.

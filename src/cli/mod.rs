@@ -1,6 +1,7 @@
 //! The command line: clap types, one file a subcommand.
 
 mod args;
+mod cost;
 mod effects;
 mod output;
 mod plan;
@@ -27,6 +28,8 @@ enum Command {
     Report(report::Args),
     /// Run one scene on some engines and write what they did
     Run(run::Args),
+    /// Run scenes on every engine over a ladder of steps: what does accuracy cost in time?
+    Cost(cost::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
     /// Switch each effect of a scene, one at a time: what it costs, and what it changes
@@ -55,6 +58,7 @@ fn dispatch(command: Command) -> Result<()> {
     match command {
         Command::Report(args) => report::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Cost(args) => cost::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Scenes(args) => scenes::run(&args),

@@ -3,6 +3,7 @@
 mod case_page;
 #[cfg(feature = "plots")]
 pub mod chart;
+mod cost;
 mod effects_page;
 mod files;
 mod format;
@@ -14,6 +15,7 @@ mod tables;
 mod template;
 
 pub use case_page::findings;
+pub use cost::{CostReport, write_cost};
 pub use effects_page::{effects_findings, effects_table, write_effects};
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};

@@ -1,5 +1,6 @@
 //! The questions that need many runs.
 
+pub mod cost;
 mod effects;
 mod price;
 mod side_by_side;

@@ -190,3 +190,92 @@ fn a_report_is_whole_and_the_same_every_time() {
         }
     }
 }
+
+/// The header is what programs read; every run has its row, those beyond the budget included.
+#[test]
+fn the_study_of_cost_leaves_every_point_and_a_page() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let study = |out: &str| {
+        let arguments = [
+            "cost",
+            "headon-equal",
+            "kepler-circle",
+            "--engine",
+            "lecture,exact-fast",
+            "--repetitions",
+            "1",
+            "--budget",
+            "3000",
+            "--quiet",
+            "--out",
+            out,
+        ];
+        assert_eq!(carom(folder, &arguments), "");
+        let read = |name: &str| fs::read_to_string(folder.join(out).join(name)).unwrap();
+        (read("cost.csv"), read("orders.csv"), read("README.md"))
+    };
+    let (cost, orders, page) = study("a");
+    let rows: Vec<Vec<&str>> = cost.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        rows[0].join(","),
+        "scene,engine,setting,dt,position_error_rms,position_error_max,event_time_error,\
+         energy_error,local_error,cost_ms_per_sim_s,cost_min_ms_per_sim_s,steps,outcome"
+    );
+    for scene in ["headon-equal", "kepler-circle"] {
+        let of = |engine: &str| {
+            let rows = rows
+                .iter()
+                .filter(|row| row[0] == scene && row[1] == engine);
+            rows.cloned().collect::<Vec<_>>()
+        };
+        let lecture = of("lecture");
+        let (last, ran) = lecture.split_last().unwrap();
+        assert_eq!(last[4..], ["", "", "", "", "", "", "", "", "BudgetSpent"]);
+        assert!(ran.len() >= 2, "{ran:?}");
+        for row in ran {
+            assert!(row[5].parse::<f64>().unwrap() >= 0.0, "{row:?}");
+            assert!(row[9].parse::<f64>().unwrap() > 0.0, "{row:?}");
+            assert_eq!(row[12], "Finished");
+        }
+        let [exact] = &of("exact-fast")[..] else {
+            panic!("one point without a step");
+        };
+        assert_eq!(exact[3], "");
+        assert!(exact[5].parse::<f64>().unwrap() < 1e-9, "{exact:?}");
+        assert!(page.contains(&format!("work-precision-{scene}.png")) == cfg!(feature = "plots"));
+        let picture = folder.join("a").join(format!("work-precision-{scene}.png"));
+        assert_eq!(picture.exists(), cfg!(feature = "plots"));
+    }
+    assert!(orders.starts_with("scene,engine,error,order,low,high,stated_order,points\n"));
+    assert!(page.contains("The price tag"));
+    // What is counted and computed is the same again; only prices differ.
+    let counted = |table: &str| -> Vec<String> {
+        let row = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            [&cells[..9], &cells[11..]].concat().join(",")
+        };
+        table.lines().map(row).collect()
+    };
+    assert_eq!(counted(&cost), counted(&study("b").0));
+}
+
+#[test]
+fn the_study_of_cost_says_what_it_cannot_do() {
+    let scratch = tempfile::tempdir().unwrap();
+    for (arguments, remedy) in [
+        (["--repetitions", "0"], "above 0"),
+        (["--engine", "exact"], "exact-fast"),
+    ] {
+        let mut command = Command::cargo_bin("carom").unwrap();
+        let output = command
+            .current_dir(scratch.path())
+            .args(["cost", "headon-equal"])
+            .args(arguments)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(remedy), "{said}");
+    }
+}

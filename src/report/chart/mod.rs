@@ -17,6 +17,7 @@ mod text;
 mod theme;
 mod ticks;
 mod window;
+mod work;
 
 #[cfg(test)]
 mod testing;
@@ -26,6 +27,7 @@ pub use curves::{Curve, CurvesFigure, Marks, Panel, Weight, curves};
 pub use paths::paths;
 pub use paths_figure::{AxisLabel, PathBody, PathsFigure, View};
 pub use theme::{COLOR_COUNT, LineStyle};
+pub use work::{WorkCurve, WorkFigure, WorkPoint, work};
 
 /// Why a picture could not be made. None of these depends on the data.
 #[derive(Debug, thiserror::Error)]

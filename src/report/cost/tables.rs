@@ -1,0 +1,112 @@
+//! `cost.csv` and `orders.csv`: every point once, drawn and judged afterwards.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::study::cost::{CostPoint, OrderRow, SceneCost};
+
+/// A row of `cost.csv`; the names of the fields are the header.
+#[derive(Serialize)]
+struct CostRow<'a> {
+    scene: &'a str,
+    engine: &'a str,
+    setting: &'a str,
+    dt: Option<f64>,
+    position_error_rms: Option<f64>,
+    position_error_max: Option<f64>,
+    event_time_error: Option<f64>,
+    energy_error: Option<f64>,
+    local_error: Option<f64>,
+    cost_ms_per_sim_s: Option<f64>,
+    cost_min_ms_per_sim_s: Option<f64>,
+    steps: Option<u64>,
+    outcome: &'a str,
+}
+
+impl<'a> CostRow<'a> {
+    fn new(scene: &'a str, point: &'a CostPoint) -> Self {
+        let price = point.price.as_ref();
+        Self {
+            scene,
+            engine: &point.engine,
+            setting: &point.setting,
+            dt: point.dt,
+            position_error_rms: point.errors.position_rms,
+            position_error_max: point.errors.position_max,
+            event_time_error: point.errors.event_time,
+            energy_error: point.errors.energy,
+            local_error: point.errors.local,
+            cost_ms_per_sim_s: point.cost(),
+            cost_min_ms_per_sim_s: price.map(|price| price.min),
+            steps: price.map(|price| price.steps),
+            outcome: point.ending.word(),
+        }
+    }
+}
+
+/// Writes `cost.csv`: a row for every run, those that failed or were too dear included.
+pub(super) fn write_points(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    for cost in scenes {
+        for point in &cost.points {
+            table.serialize(CostRow::new(&cost.scene.name, point))?;
+        }
+    }
+    table.flush()
+}
+
+/// A row of `orders.csv`; the names of the fields are the header.
+#[derive(Serialize)]
+struct OrdersRow<'a> {
+    scene: &'a str,
+    engine: &'a str,
+    error: &'a str,
+    order: Option<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+    /// Blank: no engine states its order in its specification yet.
+    stated_order: Option<f64>,
+    points: usize,
+}
+
+impl<'a> OrdersRow<'a> {
+    fn new(scene: &'a str, row: &'a OrderRow) -> Self {
+        let order = row.fit.order;
+        Self {
+            scene,
+            engine: &row.engine,
+            error: row.error,
+            order: order.map(|order| order.order),
+            low: order.map(|order| order.low),
+            high: order.map(|order| order.high),
+            stated_order: None,
+            points: row.fit.points,
+        }
+    }
+}
+
+/// Writes `orders.csv`: a row for every error of every engine that takes steps.
+pub(super) fn write_orders(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let rows: Vec<_> = scenes.iter().map(|cost| (cost, cost.orders())).collect();
+    if rows.iter().all(|(_, orders)| orders.is_empty()) {
+        // No engine takes steps: the header, so that a program finds the table it expects.
+        table.write_record([
+            "scene",
+            "engine",
+            "error",
+            "order",
+            "low",
+            "high",
+            "stated_order",
+            "points",
+        ])?;
+    }
+    for (cost, orders) in &rows {
+        for row in orders {
+            table.serialize(OrdersRow::new(&cost.scene.name, row))?;
+        }
+    }
+    table.flush()
+}

@@ -1,0 +1,74 @@
+//! The ladder of steps: powers of two of the sample spacing, as far as the budget reaches.
+
+use crate::scene::Scene;
+
+/// More rungs than this say nothing new: the step is then a millionth of the sample spacing.
+const RUNGS_MAX: u32 = 21;
+
+/// One step size on a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// Steps between two samples, k.
+    pub steps_per_sample: u64,
+    /// The step, s: the time between samples over k.
+    pub dt: f64,
+    /// Whether the run stays within its budget.
+    pub affordable: bool,
+}
+
+/// Steps k = 1, 2, 4, ... between two samples, from coarse to fine.
+///
+/// The work of a run is counted as steps x (bodies + pairs), the same for every engine. The
+/// first rung beyond the `budget` ends the ladder and is marked.
+#[must_use]
+pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
+    let bodies = scene.bodies.len() as u64;
+    let a_step = bodies + bodies * bodies.saturating_sub(1) / 2;
+    let samples = scene.sample_count() as u64;
+    let mut rungs = Vec::new();
+    for power in 0..RUNGS_MAX {
+        let steps_per_sample = 1_u64 << power;
+        let work = steps_per_sample
+            .saturating_mul(samples)
+            .saturating_mul(a_step);
+        #[allow(clippy::cast_precision_loss, reason = "a power of two")]
+        let dt = scene.sample_every / steps_per_sample as f64;
+        let affordable = work <= budget;
+        rungs.push(Rung {
+            steps_per_sample,
+            dt,
+            affordable,
+        });
+        if !affordable {
+            break;
+        }
+    }
+    rungs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two bodies make three units of work a step; four samples make k = 1 cost 12.
+    #[test]
+    fn the_ladder_halves_the_step_until_the_budget_is_spent() {
+        let text = "name='x'\nduration=4\nsample_every=1\n\
+            [[bodies]]\nname='a'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[0,0,0]\n\
+            [[bodies]]\nname='b'\nmass=1\nradius=1\nposition=[9,0,0]\nvelocity=[0,0,0]\n";
+        let scene = crate::scene::parse(text, "x").unwrap();
+        let steps = |budget| -> Vec<(f64, bool)> {
+            let rungs = ladder(&scene, budget);
+            rungs
+                .iter()
+                .map(|rung| (rung.dt, rung.affordable))
+                .collect()
+        };
+        assert_eq!(
+            steps(48),
+            [(1.0, true), (0.5, true), (0.25, true), (0.125, false)]
+        );
+        assert_eq!(steps(47), [(1.0, true), (0.5, true), (0.25, false)]);
+        assert_eq!(steps(1), [(1.0, false)]);
+    }
+}

@@ -1,0 +1,47 @@
+//! The machine that prices hold for.
+
+use serde::Serialize;
+
+/// What of a machine is worth printing beside a price.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Model of the processor, where the system tells.
+    pub processor: Option<String>,
+    /// Cores that this program may use.
+    pub cores: usize,
+    /// Operating system and architecture.
+    pub system: String,
+}
+
+impl Machine {
+    /// The machine that this runs on.
+    #[must_use]
+    pub fn this() -> Self {
+        let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        Self {
+            processor: processor(&told),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        }
+    }
+}
+
+/// The first model name of Linux's table of processors.
+fn processor(table: &str) -> Option<String> {
+    let lines = table.lines().filter_map(|line| line.split_once(':'));
+    let named = lines.filter(|(key, _)| key.trim() == "model name");
+    let mut names = named.map(|(_, name)| name.trim().to_owned());
+    names.find(|name| !name.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_is_named_where_the_system_tells() {
+        let table = "processor\t: 0\nmodel name\t: Some CPU @ 2.00GHz\nflags\t: a b\n";
+        assert_eq!(processor(table).as_deref(), Some("Some CPU @ 2.00GHz"));
+        assert_eq!(processor(""), None);
+    }
+}
