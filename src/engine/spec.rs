@@ -223,6 +223,19 @@ impl EngineSpec {
         }
     }
 
+    /// The order in the step that the engine states for errors of position, with impacts on the
+    /// way or without; none where it states none.
+    #[must_use]
+    pub fn stated_order(&self, through_impacts: bool) -> Option<u8> {
+        match self.kind {
+            EngineKind::Impulse(settings) if through_impacts => {
+                Some(settings.order_through_impacts())
+            }
+            EngineKind::Impulse(settings) => Some(settings.order()),
+            EngineKind::Exact(_) | EngineKind::Rapier(_) => None,
+        }
+    }
+
     /// Whether this build has the engine.
     #[must_use]
     pub fn is_built(&self) -> bool {

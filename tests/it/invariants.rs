@@ -1,5 +1,6 @@
 //! What must hold whatever the numbers: conservation, symmetry, scaling, absent = neutral.
 
+use carom::engine::{engine, record};
 use carom::recording::Recording;
 use carom::scene::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring};
 use proptest::prelude::*;
@@ -289,6 +290,17 @@ fn mass() -> impl Strategy<Value = f64> {
     prop_oneof![Just(1.0), 0.1..10.0, Just(1e9), Just(1e-9)]
 }
 
+/// The hand-written engines.
+const RUNGS: [&str; 7] = [
+    "lecture",
+    "lecture-in-place",
+    "exact-drag",
+    "verlet",
+    "swept",
+    "swept-4",
+    "adaptive",
+];
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
@@ -313,17 +325,22 @@ proptest! {
             }),
             ..acting
         };
-        let absent = lecture(&scene(1.0, 0.25, bodies.clone(), effects.clone()), 0.01);
-        // Past the numbers whose squares overflow, no coefficient of 0 is neutral: 0 times
-        // infinity. A light ball in strong drag gets there.
-        let small = |x: &f64| x.abs() < 1e100;
-        let tame = absent.outcome.is_finished() && absent.samples().flatten().all(|state| {
-            state.position.iter().chain(state.velocity.iter()).all(small)
-        });
-        prop_assume!(tame);
-        for (name, effects) in neutral(&effects) {
-            let present = lecture(&scene(1.0, 0.25, bodies.clone(), effects), 0.01);
-            assert_same_bits(&absent, &present, name);
+        for rung in RUNGS {
+            let run = |effects: Effects| {
+                let scene = scene(1.0, 0.25, bodies.clone(), effects);
+                record(&scene, &engine(rung).unwrap(), 0.02).unwrap()
+            };
+            let absent = run(effects.clone());
+            // Past the numbers whose squares overflow, no coefficient of 0 is neutral: 0 times
+            // infinity. A light ball in strong drag gets there.
+            let small = |x: &f64| x.abs() < 1e100;
+            let tame = absent.outcome.is_finished() && absent.samples().flatten().all(|state| {
+                state.position.iter().chain(state.velocity.iter()).all(small)
+            });
+            prop_assume!(tame);
+            for (name, effects) in neutral(&effects) {
+                assert_same_bits(&absent, &run(effects), &format!("{rung}: {name}"));
+            }
         }
     }
 

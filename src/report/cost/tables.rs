@@ -4,6 +4,8 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use crate::engine::engine;
+use crate::scene::Scene;
 use crate::study::cost::{CostPoint, OrderRow, SceneCost};
 
 /// A row of `cost.csv`; the names of the fields are the header.
@@ -65,22 +67,25 @@ struct OrdersRow<'a> {
     order: Option<f64>,
     low: Option<f64>,
     high: Option<f64>,
-    /// Blank: no engine states its order in its specification yet.
-    stated_order: Option<f64>,
+    /// Blank where the engine states none.
+    stated_order: Option<u8>,
     points: usize,
 }
 
 impl<'a> OrdersRow<'a> {
-    fn new(scene: &'a str, row: &'a OrderRow) -> Self {
+    fn new(scene: &'a Scene, row: &'a OrderRow) -> Self {
+        let effects = &scene.effects;
+        let impacts = effects.contact.is_some() || effects.cushions.is_some();
+        let spec = engine(&row.engine).ok();
         let order = row.fit.order;
         Self {
-            scene,
+            scene: &scene.name,
             engine: &row.engine,
             error: row.error,
             order: order.map(|order| order.order),
             low: order.map(|order| order.low),
             high: order.map(|order| order.high),
-            stated_order: None,
+            stated_order: spec.and_then(|spec| spec.stated_order(impacts)),
             points: row.fit.points,
         }
     }
@@ -105,7 +110,7 @@ pub(super) fn write_orders(scenes: &[SceneCost], out: &mut dyn Write) -> io::Res
     }
     for (cost, orders) in &rows {
         for row in orders {
-            table.serialize(OrdersRow::new(&cost.scene.name, row))?;
+            table.serialize(OrdersRow::new(&cost.scene, row))?;
         }
     }
     table.flush()
