@@ -32,22 +32,40 @@ pub(super) fn bounce<const PUSH_OUT: bool>(
     let walls = if effect.half_height.is_some() { 6 } else { 4 };
     let half = effect.half_extents();
     for (body, particle) in particles.iter_mut().enumerate() {
-        for wall in &ORDER[..walls] {
-            let (axis, side) = wall.axis_and_side();
-            if bounce_off::<PUSH_OUT>(
-                particle,
-                axis,
-                side,
-                half[axis],
-                effect.restitution,
-                |impulse| {
-                    observer.note(EventKind::Cushion { body, wall: *wall }, impulse);
-                },
-            ) {
-                break;
-            }
+        // A ball overlaps one of the two walls across an axis only if its farther side does.
+        let is_free = |axis: usize| particle.position[axis].abs() + particle.radius <= half[axis];
+        if is_free(0) && is_free(1) && is_free(2) {
+            continue;
+        }
+        if let Some((wall, impulse)) =
+            go_through::<PUSH_OUT>(particle, &ORDER[..walls], &half, effect.restitution)
+        {
+            observer.note(EventKind::Cushion { body, wall }, impulse);
         }
     }
+}
+
+/// The chain; the wall that the ball runs into, with the impulse.
+///
+/// Kept out of the loop: overlapping is rare, and the loop over balls stays small.
+#[inline(never)]
+fn go_through<const PUSH_OUT: bool>(
+    particle: &mut Particle,
+    walls: &[Wall],
+    half: &[f64; 3],
+    restitution: f64,
+) -> Option<(Wall, f64)> {
+    for wall in walls {
+        let (axis, side) = wall.axis_and_side();
+        if let Some(penetration) = overlap(particle, axis, side, half[axis]) {
+            let impulse = mirror(particle, axis, side, restitution);
+            if PUSH_OUT {
+                particle.position[axis] += (1.0 + restitution) * penetration * -side;
+            }
+            return impulse.map(|impulse| (*wall, impulse));
+        }
+    }
+    None
 }
 
 /// A touching ball's velocity mirrored at a wall; the impulse, none if it moves away.
@@ -69,33 +87,12 @@ pub(super) fn mirror(
     }
 }
 
-/// One link of the chain: whether the ball overlaps this wall, which is then dealt with.
-#[inline]
-fn bounce_off<const PUSH_OUT: bool>(
-    particle: &mut Particle,
-    axis: usize,
-    side: f64,
-    half: f64,
-    restitution: f64,
-    note: impl FnOnce(f64),
-) -> bool {
+/// One link of the chain: how far the ball overlaps this wall, if it does.
+fn overlap(particle: &Particle, axis: usize, side: f64, half: f64) -> Option<f64> {
     let (coordinate, r) = (particle.position[axis], particle.radius);
-    let penetration = if side > 0.0 {
-        if coordinate + r <= half {
-            return false;
-        }
-        coordinate + r - half
+    if side > 0.0 {
+        (coordinate + r > half).then_some(coordinate + r - half)
     } else {
-        if coordinate - r >= -half {
-            return false;
-        }
-        -half - coordinate + r
-    };
-    if let Some(impulse) = mirror(particle, axis, side, restitution) {
-        note(impulse);
+        (coordinate - r < -half).then_some(-half - coordinate + r)
     }
-    if PUSH_OUT {
-        particle.position[axis] += (1.0 + restitution) * penetration * -side;
-    }
-    true
 }
