@@ -1,7 +1,7 @@
 //! The work-precision picture of a scene.
 
 use crate::error::{Error, Result};
-use crate::report::chart::{COLOR_COUNT, LineStyle, WorkCurve, WorkFigure, WorkPoint, work};
+use crate::report::chart::{LineStyle, WorkCurve, WorkFigure, WorkPoint, work};
 use crate::report::engineering;
 use crate::study::cost::{CostPoint, EngineCost, SceneCost, pareto_front};
 
@@ -86,7 +86,8 @@ fn curve(cost: &SceneCost, place: usize, engine: &EngineCost, least: f64) -> Wor
     WorkCurve {
         label: name.clone(),
         color: place,
-        line: LineStyle::of_voice(place / COLOR_COUNT),
+        // Solid and dashed in turn: neighbours that coincide both show.
+        line: LineStyle::of_voice(place % 2),
         points: cost.stock(name).filter_map(point).collect(),
         others: others.filter_map(|point| pair(point, least)).collect(),
     }
