@@ -2,7 +2,7 @@
 
 use super::{EngineKind, EngineSpec, Simulation, StepGrid, exact, prepare};
 use crate::error::Result;
-use crate::recording::{Outcome, Recording, initial_states};
+use crate::recording::{Recording, initial_states};
 use crate::scene::Scene;
 
 /// Runs an engine on a scene and records every sample and event.
@@ -34,16 +34,9 @@ pub fn drive(scene: &Scene, voice: &str, simulation: &mut dyn Simulation) -> Rec
     for sample in 1..=scene.sample_count() {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
         simulation.state_into(&mut states);
-        let blown_up = Outcome::blown_up(&states, scene.sample_time(sample));
-        if let Some(outcome) = halt.or(blown_up) {
-            recording.outcome = outcome;
-            recording
-                .events
-                .truncate_after(scene.sample_time(sample - 1));
+        if !recording.keep(scene, halt, &states) {
             break;
         }
-        recording.push(&states);
-        recording.events.end_interval();
     }
     recording.work = simulation.work();
     recording

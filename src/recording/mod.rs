@@ -90,6 +90,21 @@ impl Recording {
         self.states.len() / self.body_count
     }
 
+    /// Keeps the next sample with the events before it; or, where the simulation has halted or a
+    /// number is no longer finite, ends at the sample before. Whether it goes on.
+    pub fn keep(&mut self, scene: &Scene, halt: Option<Outcome>, states: &[BodyState]) -> bool {
+        let sample = self.sample_count();
+        let blown_up = Outcome::blown_up(states, scene.sample_time(sample));
+        if let Some(outcome) = halt.or(blown_up) {
+            self.outcome = outcome;
+            self.events.truncate_after(scene.sample_time(sample - 1));
+            return false;
+        }
+        self.push(states);
+        self.events.end_interval();
+        true
+    }
+
     /// How many samples at the start can be compared position by position: those with enough
     /// certified digits, before anything undetermined. All of them where nothing is certified.
     #[must_use]

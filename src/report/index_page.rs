@@ -13,7 +13,7 @@ use crate::case::{Evidence, TRUTH};
 use crate::compare::RIGHT_WITHIN;
 use crate::engine::EngineSpec;
 use crate::error::Result;
-use crate::study::{PairSummary, Summary, VoiceSummary};
+use crate::study::{PairSummary, Summary, VoiceSummary, median};
 
 const TEMPLATE: &str = include_str!("../../templates/index.md");
 
@@ -291,13 +291,6 @@ fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String
     (!worst.is_empty()).then_some(said)
 }
 
-/// The middle of sorted numbers, the mean of the two middle ones where their count is even.
-fn median(sorted: &[f64]) -> Option<f64> {
-    let upper = *sorted.get(sorted.len() / 2)?;
-    let lower = *sorted.get((sorted.len() - 1) / 2)?;
-    Some(0.5 * (lower + upper))
-}
-
 /// How often each engine is right, and its middle error.
 fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
     let judged = summaries
@@ -308,9 +301,11 @@ fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
         let all = summaries.iter().flat_map(|summary| &summary.verdicts);
         let own: Vec<_> = all.filter(|verdict| verdict.engine == spec.name).collect();
         let right = own.iter().filter(|verdict| verdict.is_right()).count();
-        let mut errors: Vec<_> = own.iter().map(|verdict| verdict.error_relative).collect();
-        errors.sort_by(f64::total_cmp);
-        let middle = percent(median(&errors)?);
+        let errors: Vec<_> = own.iter().map(|verdict| verdict.error_relative).collect();
+        if errors.is_empty() {
+            return None;
+        }
+        let middle = percent(median(&errors));
         Some(format!(
             "`{}` in {right} (median error {middle})",
             spec.name

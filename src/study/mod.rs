@@ -2,12 +2,14 @@
 
 pub mod cost;
 mod effects;
+mod median;
 mod price;
 mod side_by_side;
 mod summary;
 mod tracks;
 
 pub use effects::{Change, Difference, Effect, EffectRow, EffectStudy, NeverFelt, effects};
+pub use median::median;
 pub use price::Price;
 pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
+use super::median::median;
 use crate::engine::{EngineSpec, prepare};
 use crate::error::Result;
 use crate::scene::Scene;
@@ -106,9 +107,9 @@ fn price(own: &[f64], first: &[f64]) -> Option<Price> {
     let own = sorted(own.iter().copied());
     let (ratio_low, ratio_high) = interval(&ratios)?;
     Some(Price {
-        median_ms_per_sim_s: median(&own)?,
+        median_ms_per_sim_s: median(&own),
         min_ms_per_sim_s: *own.first()?,
-        ratio: median(&ratios)?,
+        ratio: median(&ratios),
         ratio_low,
         ratio_high,
         repetitions: own.len(),
@@ -119,13 +120,6 @@ fn sorted(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
     numbers
-}
-
-/// The middle of sorted numbers, the mean of the two middle ones where their count is even.
-fn median(sorted: &[f64]) -> Option<f64> {
-    let upper = *sorted.get(sorted.len() / 2)?;
-    let lower = *sorted.get((sorted.len() - 1) / 2)?;
-    Some(0.5 * (lower + upper))
 }
 
 /// The interval that holds the median in at least about 95 % of cases, whatever the

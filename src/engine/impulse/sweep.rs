@@ -80,9 +80,6 @@ impl Handling for Sweep {
                 left -= next.time;
             }
             happen(next.kind, phases, particles, left, observer);
-            if phases.damped {
-                motion.forget();
-            }
         }
         taken
     }

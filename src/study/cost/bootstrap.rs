@@ -1,7 +1,9 @@
-//! Medians, and how sure a ratio of two prices is.
+//! How sure a ratio of two prices is.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+
+use crate::study::median::median;
 
 /// Resamples of one interval.
 const RESAMPLES: usize = 2000;
@@ -49,19 +51,6 @@ impl Dice {
     }
 }
 
-/// The median; NaN of nothing.
-#[must_use]
-pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() {
-        0 => f64::NAN,
-        count if count % 2 == 1 => sorted[middle],
-        _ => f64::midpoint(sorted[middle - 1], sorted[middle]),
-    }
-}
-
 /// The median of the ratios `a[i] / b[i]`, measured in the same round each, with a percentile
 /// bootstrap interval; none with fewer than three rounds.
 #[must_use]
@@ -90,13 +79,6 @@ pub fn paired_ratio(a: &[f64], b: &[f64], seed: u64) -> Option<Ratio> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn medians_of_odd_even_and_nothing() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
-        assert!(median(&[]).is_nan());
-    }
 
     #[test]
     fn a_known_ratio_is_found_and_decided() {

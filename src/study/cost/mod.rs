@@ -15,7 +15,7 @@ mod survey;
 #[cfg(test)]
 mod testing;
 
-pub use bootstrap::{Ratio, median, paired_ratio};
+pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
 pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
 pub use front::pareto_front;

@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::bootstrap::{Dice, median};
+use super::bootstrap::Dice;
 use super::contender::Contender;
 use super::{CostOptions, Stage, Watcher};
 use crate::engine::{Simulation, prepare};
 use crate::error::Result;
+use crate::study::median::median;
 
 /// A measurement lasts at least about so long; shorter runs are repeated within it.
 const LEAST: Duration = Duration::from_millis(1);

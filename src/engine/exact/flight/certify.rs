@@ -9,7 +9,7 @@ use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
 use crate::physics::real::Real;
-use crate::recording::{Digits, Outcome, Recording, Undetermined, initial_states};
+use crate::recording::{Digits, Recording, Undetermined, initial_states};
 use crate::scene::Scene;
 
 /// Inputs are moved by this share to see how errors grow: thousands of roundings.
@@ -47,16 +47,9 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     for sample in 1..=scene.sample_count() {
         let halt = run.advance_to(sample, Some(&mut recording.events));
         run.state_into(&mut states);
-        let blown_up = Outcome::blown_up(&states, scene.sample_time(sample));
-        if let Some(outcome) = halt.or(blown_up) {
-            recording.outcome = outcome;
-            recording
-                .events
-                .truncate_after(scene.sample_time(sample - 1));
+        if !recording.keep(scene, halt, &states) {
             break;
         }
-        recording.push(&states);
-        recording.events.end_interval();
         let mut parting = Parting::default();
         for other in &mut moved {
             let Ok(other) = other else { continue };

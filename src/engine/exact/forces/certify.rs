@@ -70,12 +70,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             continue;
         }
         published.state_into(&mut next);
-        let blown_up = Outcome::blown_up(&next, scene.sample_time(sample));
-        if let Some(outcome) = halt.or(blown_up) {
-            recording.outcome = outcome;
-            recording
-                .events
-                .truncate_after(scene.sample_time(sample - 1));
+        if !recording.keep(scene, halt, &next) {
             break;
         }
         states.clone_from(&next);
@@ -86,8 +81,6 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             }
             Some(_) | None => Parting::unknown(),
         };
-        recording.push(&states);
-        recording.events.end_interval();
         partings.push(parting);
         if witness.is_some()
             && published.is_unsettled()

@@ -178,12 +178,6 @@ impl<T: Real> ForcesSimulation<T> {
         self.is_unsettled = true;
     }
 
-    /// Contacts that press at present.
-    #[must_use]
-    pub fn pressing_contacts(&self) -> usize {
-        self.held.len()
-    }
-
     fn bounce_height(&self) -> f64 {
         let least = self.accuracy.bounce_height;
         if self.is_unsettled && !self.is_patient {
