@@ -14,10 +14,10 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Everything that can keep carom from running.
 #[derive(Debug, Error)]
 pub enum Error {
-    /// A scene file says something that is not a scene.
+    /// A file of data, a scene or what must hold on it, says something that makes no sense.
     #[error("{file}:{line}:{column}: {message}")]
-    SceneFile {
-        /// The scene file.
+    DataFile {
+        /// The file.
         file: String,
         /// Line, counted from 1.
         line: usize,
@@ -114,7 +114,7 @@ pub enum Error {
     },
     /// No scene file and no case of that name.
     #[error(
-        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases{hint}"
+        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}"
     )]
     UnknownCase {
         /// The name asked for.

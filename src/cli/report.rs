@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::args::{EngineArgs, LibraryArgs, REPORTED};
 use super::output::{progress, say, warn};
-use crate::case::Case;
+use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::report::{Folder, Place, write_comparison, write_index};
 use crate::study::side_by_side;
@@ -40,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     names.dedup();
     let cases = names
         .iter()
-        .map(|name| library.case(name))
+        .map(|name| case::case(name, &library))
         .collect::<Result<Vec<Case>>>()?;
     if cases.is_empty() {
         return Err(Error::NoCases);

@@ -6,7 +6,7 @@ use clap::Subcommand;
 
 use super::args::LibraryArgs;
 use super::output::say;
-use crate::case::Evidence;
+use crate::case::{Evidence, Library, scene_text};
 use crate::error::{Error, Result};
 use crate::report::Folder;
 use crate::scene::generate::{Cluster, Gas, Rack};
@@ -27,6 +27,9 @@ enum What {
     List {
         #[command(flatten)]
         library: LibraryArgs,
+        /// List the hard cases instead
+        #[arg(long, conflicts_with = "reference")]
+        hard: bool,
         /// Print JSON
         #[arg(long)]
         json: bool,
@@ -113,8 +116,11 @@ enum Recipe {
 
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.what {
-        What::List { library, json } => list(library, *json),
-        What::Show { case, library } => say(library.library().scene_text(case)?.trim_end()),
+        What::List {
+            hard: true, json, ..
+        } => list(&Library::hard(), *json),
+        What::List { library, json, .. } => list(&library.library(), *json),
+        What::Show { case, library } => say(scene_text(case, &library.library())?.trim_end()),
         What::New { name, out } => {
             let text = STARTER.replacen("my-scene", name, 1);
             parse(&text, "the new scene")?;
@@ -141,8 +147,7 @@ struct Listed {
     truth: Option<Evidence>,
 }
 
-fn list(library: &LibraryArgs, json: bool) -> Result<()> {
-    let library = library.library();
+fn list(library: &Library, json: bool) -> Result<()> {
     let listed = library
         .names()?
         .into_iter()

@@ -1,5 +1,6 @@
 //! The questions that need many runs.
 
+mod breaches;
 pub mod cost;
 mod effects;
 mod median;
@@ -8,6 +9,7 @@ mod side_by_side;
 mod summary;
 mod tracks;
 
+pub use breaches::{Breach, Excess, breaches};
 pub use effects::{Change, Difference, Effect, EffectRow, EffectStudy, NeverFelt, effects};
 pub use median::median;
 pub use price::Price;

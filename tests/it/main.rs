@@ -12,6 +12,7 @@ mod exact_flight;
 mod exact_forces;
 #[cfg(feature = "rapier")]
 mod geometry;
+mod hard;
 mod hostile;
 mod invariants;
 mod layers;
