@@ -8,6 +8,7 @@ use crate::case::scene_or_case;
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, write_cost};
+use crate::study::Timing;
 use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
@@ -26,8 +27,8 @@ pub(super) struct Args {
     /// Seed of the order of runs and of the intervals
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Rounds of timing after a warm-up
-    #[arg(long, default_value_t = 5)]
+    /// Rounds of timing after a warm-up; ratios have an interval from 6 on
+    #[arg(long, default_value_t = 7)]
     repetitions: usize,
     /// Work a run may take, in steps x (bodies + pairs)
     #[arg(long, default_value_t = 1_000_000)]
@@ -84,8 +85,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         }
     }
     let options = CostOptions {
-        seed: args.seed,
-        repetitions: args.repetitions,
+        timing: Timing {
+            seed: args.seed,
+            repetitions: args.repetitions,
+        },
         budget: args.budget,
     };
     let folder = Folder::open(&args.out)?;

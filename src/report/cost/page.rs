@@ -9,8 +9,9 @@ use crate::error::Result;
 use crate::report::engineering;
 use crate::report::template::fill;
 use crate::study::cost::{
-    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, Ratio, SceneCost, Verdict,
+    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, SceneCost, Verdict,
 };
+use crate::study::{Ratio, Timing};
 
 const TEMPLATE: &str = include_str!("../../../templates/cost.md");
 
@@ -71,8 +72,7 @@ struct VerdictRow {
 /// A fault of the template.
 pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
     let CostOptions {
-        seed,
-        repetitions,
+        timing: Timing { seed, repetitions },
         budget,
     } = report.options;
     let scenes = report.scenes.iter();

@@ -41,7 +41,7 @@ impl<'a> CostRow<'a> {
             local_error: point.errors.local,
             cost_ms_per_sim_s: point.cost(),
             cost_min_ms_per_sim_s: price.map(|price| price.min),
-            steps: price.map(|price| price.steps),
+            steps: price.map(|price| price.work.steps),
             outcome: point.ending.word(),
         }
     }

@@ -1,6 +1,5 @@
 //! What accuracy costs in time: every engine over a ladder of steps, priced and judged.
 
-mod bootstrap;
 mod contender;
 mod fit;
 mod front;
@@ -10,12 +9,10 @@ mod orders;
 mod price_tag;
 mod reference;
 mod sensitivity;
-mod stopwatch;
 mod survey;
 #[cfg(test)]
 mod testing;
 
-pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
 pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
 pub use front::pareto_front;
@@ -25,10 +22,9 @@ pub use orders::{OrderRow, Verdict};
 pub use price_tag::{Comparison, PriceTag, targets};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
-pub use stopwatch::Price;
 pub use survey::scene_cost;
 
-use super::Refusal;
+use super::{Price, Refusal, Timing};
 use crate::engine::EngineSpec;
 use crate::recording::Outcome;
 use crate::scene::Scene;
@@ -36,10 +32,8 @@ use crate::scene::Scene;
 /// How a study of cost is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CostOptions {
-    /// Seed of the order of runs and of the intervals.
-    pub seed: u64,
-    /// Rounds of timing, the warm-up not counted.
-    pub repetitions: usize,
+    /// How prices are taken.
+    pub timing: Timing,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
 }
