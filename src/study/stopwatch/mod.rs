@@ -26,8 +26,8 @@ const LEAST: Duration = Duration::from_millis(2);
 const BATCH_MAX: u32 = 64;
 /// The rounds end early once they have taken so long for each job …
 const PATIENCE: Duration = Duration::from_millis(2500);
-/// … but not before so many.
-pub const ROUNDS_MIN: usize = 3;
+/// … but not before so many, with which a ratio has an interval.
+pub const ROUNDS_MIN: usize = PAIRS_MIN;
 
 /// A run to be timed from one sample of a scene to a later one.
 #[derive(Debug, Clone, Copy)]
