@@ -9,6 +9,7 @@ mod files;
 mod format;
 mod index_page;
 mod output;
+mod overhead;
 #[cfg(feature = "plots")]
 mod pictures;
 mod tables;

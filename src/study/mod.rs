@@ -3,6 +3,7 @@
 pub mod cost;
 mod effects;
 mod median;
+mod overhead;
 mod side_by_side;
 mod stopwatch;
 mod summary;
@@ -12,6 +13,7 @@ pub use effects::{
     Change, Difference, Effect, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects,
 };
 pub use median::median;
+pub use overhead::Overhead;
 pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
 pub use stopwatch::{PAIRS_MIN, Price, ROUNDS_MIN, Ratio, Timing, paired_ratio};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};

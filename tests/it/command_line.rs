@@ -70,10 +70,11 @@ fn scenes_are_listed_shown_started_and_generated() {
             "out",
         ],
     );
-    let recipes: [&[&str]; 3] = [
+    let recipes: [&[&str]; 4] = [
         &["cluster", "--count", "8"],
         &["rack", "--jitter", "0.1"],
         &["gas", "--cells", "2"],
+        &["gas", "--count", "10", "--filling", "0.1"],
     ];
     for recipe in recipes {
         let make = |seed: &'static str| {
@@ -249,6 +250,14 @@ fn the_study_of_cost_leaves_every_point_and_a_page() {
     }
     assert!(orders.starts_with("scene,engine,error,order,low,high,stated_order,points\n"));
     assert!(page.contains("The price tag"));
+    // Two bodies, every step one pair: k = 1, 2, ... steps a sample, 32 samples a second.
+    let work = fs::read_to_string(folder.join("a/work.csv")).unwrap();
+    assert!(work.starts_with(
+        "scene,engine,setting,dt,steps_per_sim_s,force_evaluations_per_sim_s,pair_tests_per_sim_s\n"
+    ));
+    let row = work.lines().nth(1).unwrap();
+    assert_eq!(row, "headon-equal,lecture,stock,0.03125,32.0,0.0,32.0");
+    assert!(page.contains("fixed, ns a step"));
     // What is counted and computed is the same again; only prices differ.
     let counted = |table: &str| -> Vec<String> {
         let row = |line: &str| {

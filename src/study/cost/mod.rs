@@ -1,6 +1,7 @@
 //! What accuracy costs in time: every engine over a ladder of steps, priced and judged.
 
 mod contender;
+mod cuts;
 mod fit;
 mod front;
 mod ladder;
@@ -14,6 +15,7 @@ mod survey;
 mod testing;
 
 pub use contender::{Contender, STOCK, contenders};
+pub use cuts::StepCost;
 pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
@@ -146,6 +148,8 @@ pub struct SceneCost {
     pub engines: Vec<EngineCost>,
     /// Every run, by engine, setting and step from coarse to fine.
     pub points: Vec<CostPoint>,
+    /// What a step of the engines that take steps costs with more and more of the bodies.
+    pub step_costs: Vec<StepCost>,
     /// Engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// What the reader must know.
@@ -157,5 +161,15 @@ impl SceneCost {
     pub fn stock(&self, engine: &str) -> impl Iterator<Item = &CostPoint> {
         let of_engine = move |point: &&CostPoint| point.engine == engine && point.is_stock();
         self.points.iter().filter(of_engine)
+    }
+
+    /// What a run that was priced counted in a simulated second: steps, forces, pairs.
+    #[must_use]
+    pub fn work_per_sim_s(&self, point: &CostPoint) -> Option<[f64; 3]> {
+        let work = point.price.as_ref()?.work;
+        let counts = [work.steps, work.force_evaluations, work.pair_tests];
+        #[allow(clippy::cast_precision_loss, reason = "counts far below 2^53")]
+        let rates = counts.map(|count| count as f64 / self.priced_until);
+        Some(rates)
     }
 }

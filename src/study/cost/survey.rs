@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::contender::{Contender, contenders};
+use super::cuts::step_costs;
 use super::ladder::{Rung, ladder};
 use super::{
     CostOptions, CostPoint, Ending, EngineCost, Errors, Reference, SceneCost, Stage, Watcher,
@@ -69,6 +70,7 @@ pub fn scene_cost(
         .map_or(scene.sample_count(), |known| known.rest_sample(scene));
     let (mut points, size) = errors;
     price(&mut points, &runs, sample, options, watch)?;
+    let step_costs = step_costs(scene, specs, sample, options)?;
     Ok(SceneCost {
         scene: scene.clone(),
         size,
@@ -77,6 +79,7 @@ pub fn scene_cost(
         sensitivity: off,
         engines,
         points,
+        step_costs,
         refusals,
         notes,
     })

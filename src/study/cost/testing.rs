@@ -50,6 +50,7 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
         sensitivity: None,
         engines,
         points,
+        step_costs: Vec::new(),
         refusals: Vec::new(),
         notes: Vec::new(),
     }
