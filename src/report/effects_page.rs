@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::case_page::with_unit;
-use super::format::code;
+use super::format::{aligned, code};
 use super::template::fill;
 use super::{Folder, engineering};
 use crate::error::Result;
@@ -190,20 +190,8 @@ fn cells(study: &EffectStudy, row: &EffectRow) -> [String; 10] {
 pub fn effects_table(study: &EffectStudy) -> String {
     let header = HEADER.map(str::to_owned);
     let rows = study.rows.iter().map(|row| cells(study, row));
-    let rows: Vec<_> = std::iter::once(header).chain(rows).collect();
-    let width = |column: usize| {
-        let widths = rows.iter().map(|row| row[column].chars().count());
-        widths.max().unwrap_or(0)
-    };
-    let widths: Vec<_> = (0..HEADER.len()).map(width).collect();
-    let line = |row: &[String; 10]| {
-        let cells = row.iter().zip(&widths);
-        let padded: Vec<_> = cells
-            .map(|(cell, width)| format!("{cell:width$}"))
-            .collect();
-        padded.join("  ").trim_end().to_owned()
-    };
-    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+    let rows = std::iter::once(header).chain(rows).map(Vec::from);
+    aligned(&rows.collect::<Vec<_>>())
 }
 
 /// A row of `effects.csv`; the names of the fields are the header.

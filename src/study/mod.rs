@@ -1,5 +1,6 @@
 //! The questions that need many runs.
 
+pub mod bodies;
 pub mod cost;
 mod effects;
 mod median;
