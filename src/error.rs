@@ -78,6 +78,19 @@ pub enum Error {
         /// What was found, and what would be right.
         message: String,
     },
+    /// Points of another build that cannot stand beside those measured now.
+    #[error(
+        "{path}: has {what} {found}; join files of other builds, measured with the same --dt, \
+         --filling, --open and --seed"
+    )]
+    Join {
+        /// The file.
+        path: PathBuf,
+        /// What is in the way.
+        what: &'static str,
+        /// What the file says.
+        found: String,
+    },
     /// No engine of that name.
     #[error("no engine is called `{name}`; there are: {known}")]
     UnknownEngine {

@@ -1,41 +1,49 @@
 //! `carom cost`: what accuracy costs in time, on every engine.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::args::{LibraryArgs, chosen};
+use super::bodies;
 use super::output::{progress, say, warn};
 use crate::case::scene_or_case;
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, write_cost};
+use crate::study::Timing;
 use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene files, or names of cases
-    #[arg(required = true)]
+    #[arg(required_unless_present = "sizes")]
     scenes: Vec<String>,
     /// Engines, separated by commas [default: all but exact, which errors are measured against]
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     #[command(flatten)]
+    bodies: bodies::Args,
+    #[command(flatten)]
     library: LibraryArgs,
-    /// Folder for the files
-    #[arg(long, value_name = "DIR", default_value = "runs/cost")]
-    out: PathBuf,
+    /// Folder for the files [default: runs/cost, or runs/bodies with --bodies]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Seed of the order of runs and of the intervals
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Rounds of timing after a warm-up
-    #[arg(long, default_value_t = 5)]
+    /// Rounds of timing after a warm-up; ratios have an interval from 6 on
+    #[arg(long, default_value_t = 7)]
     repetitions: usize,
-    /// Work a run may take, in steps x (bodies + pairs)
-    #[arg(long, default_value_t = 1_000_000)]
-    budget: u64,
+    /// Work a run may take, in steps x (bodies + pairs) [default: 1000000, or 300000000 with
+    /// --bodies]
+    #[arg(long)]
+    budget: Option<u64>,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
 }
+
+/// Work a run may take unless told otherwise.
+const BUDGET: u64 = 1_000_000;
 
 /// Whether it is the engine that errors are measured against.
 fn is_reference(spec: &EngineSpec) -> bool {
@@ -62,7 +70,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let specs = specs(&args.names)?;
     for (argument, is_zero) in [
         ("repetitions", args.repetitions == 0),
-        ("budget", args.budget == 0),
+        ("budget", args.budget == Some(0)),
     ] {
         if is_zero {
             return Err(Error::Argument {
@@ -71,6 +79,21 @@ pub(super) fn run(args: &Args) -> Result<()> {
                 remedy: "give a number above 0".into(),
             });
         }
+    }
+    let timing = Timing {
+        seed: args.seed,
+        repetitions: args.repetitions,
+    };
+    let out = |folder: &str| {
+        args.out
+            .clone()
+            .unwrap_or_else(|| Path::new("runs").join(folder))
+    };
+    if !args.bodies.sizes.is_empty() {
+        let out = out("bodies");
+        return args
+            .bodies
+            .run(&specs, timing, args.budget, &out, args.quiet);
     }
     let library = args.library.library();
     let mut scenes = Vec::new();
@@ -84,11 +107,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         }
     }
     let options = CostOptions {
-        seed: args.seed,
-        repetitions: args.repetitions,
-        budget: args.budget,
+        timing,
+        budget: args.budget.unwrap_or(BUDGET),
     };
-    let folder = Folder::open(&args.out)?;
+    let folder = Folder::open(&out("cost"))?;
     let mut report = CostReport {
         options,
         machine: Machine::this(),

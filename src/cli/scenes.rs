@@ -103,6 +103,9 @@ enum Recipe {
         /// Lattice cells an edge; 4 spheres a cell
         #[arg(long, default_value_t = Gas::default().cells)]
         cells: usize,
+        /// Number of spheres; they thin out the smallest lattice that has so many places
+        #[arg(long, conflicts_with = "cells")]
+        count: Option<usize>,
         /// Filling fraction
         #[arg(long, default_value_t = Gas::default().filling)]
         filling: f64,
@@ -214,18 +217,22 @@ fn generate(recipe: &Recipe) -> Result<()> {
         }
         Recipe::Gas {
             cells,
+            count,
             filling,
             seed,
             out,
-        } => (
-            Gas {
+        } => {
+            let recipe = Gas {
                 cells: *cells,
                 filling: *filling,
                 seed: *seed,
-            }
-            .scene()?,
-            out,
-        ),
+            };
+            let scene = match count {
+                Some(count) => Gas::thinned(*count, *filling, *seed)?,
+                None => recipe.scene()?,
+            };
+            (scene, out)
+        }
     };
     let text = to_toml(&scene)?;
     let Some(file) = &out.out else {

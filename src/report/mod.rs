@@ -1,5 +1,6 @@
 //! Results in, bytes out: tables, pictures, pages. One manager owns the files.
 
+mod bodies;
 mod case_page;
 #[cfg(feature = "plots")]
 pub mod chart;
@@ -9,11 +10,13 @@ mod files;
 mod format;
 mod index_page;
 mod output;
+mod overhead;
 #[cfg(feature = "plots")]
 mod pictures;
 mod tables;
 mod template;
 
+pub use bodies::{bodies_findings, bodies_table, write_bodies};
 pub use case_page::findings;
 pub use cost::{CostReport, write_cost};
 pub use effects_page::{effects_findings, effects_table, write_effects};

@@ -13,6 +13,7 @@ mod paths_figure;
 mod paths_look;
 mod png;
 mod polyline;
+mod scaling;
 mod text;
 mod theme;
 mod ticks;
@@ -26,6 +27,7 @@ pub use axis::Scale;
 pub use curves::{Curve, CurvesFigure, Marks, Panel, Weight, curves};
 pub use paths::paths;
 pub use paths_figure::{AxisLabel, PathBody, PathsFigure, View};
+pub use scaling::{Crossing, ScalingFigure, Spent, scaling};
 pub use theme::{COLOR_COUNT, LineStyle};
 pub use work::{WorkCurve, WorkFigure, WorkPoint, work};
 

@@ -15,13 +15,13 @@ const HEADING: f64 = 42.0;
 /// Room below the plot for the labels and the name of its axis.
 const FOOT: f64 = 88.0;
 /// Radius of a point.
-const POINT: f64 = 8.0;
+pub(super) const POINT: f64 = 8.0;
 /// Radius of a point of other settings.
 const OTHER: f64 = 4.0;
 /// Radius of the ring around a point of the front.
-const RING: f64 = 14.0;
+pub(super) const RING: f64 = 14.0;
 /// Height of the letters beside points, in pixels: legible at a third of the size.
-const NOTE_PX: f64 = 22.0;
+pub(super) const NOTE_PX: f64 = 22.0;
 
 /// A picture of prices over errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,20 +87,25 @@ pub fn work(figure: &WorkFigure) -> Result<Vec<u8>, ChartError> {
 }
 
 /// Where the plot is, and its axes.
-struct Plot {
-    frame: Frame,
-    errors: Axis,
+pub(super) struct Plot {
+    pub(super) frame: Frame,
+    pub(super) errors: Axis,
     prices: Axis,
 }
 
 impl Plot {
-    fn place(&self, [error, price]: [f64; 2]) -> Option<Point> {
-        let x = self.frame.x(self.errors.share(error)?);
+    pub(super) fn place(&self, [error, price]: [f64; 2]) -> Option<Point> {
+        let x = self.column(error)?;
         Some([x, self.frame.y(self.prices.share(price)?)])
+    }
+
+    /// The column of an error.
+    pub(super) fn column(&self, error: f64) -> Option<f64> {
+        Some(self.frame.x(self.errors.share(error)?))
     }
 }
 
-fn pen(curve: &WorkCurve) -> Pen {
+pub(super) fn pen(curve: &WorkCurve) -> Pen {
     Pen {
         color: color(curve.color),
         width: 4.5,
@@ -131,11 +136,11 @@ fn entries(figure: &WorkFigure) -> Vec<Vec<Entry>> {
     vec![lines.collect(), keys]
 }
 
-fn ring() -> Pen {
+pub(super) fn ring() -> Pen {
     Pen::solid(INK, 3.0)
 }
 
-fn layout(figure: &WorkFigure, top: f64) -> Result<Plot, ChartError> {
+pub(super) fn layout(figure: &WorkFigure, top: f64) -> Result<Plot, ChartError> {
     let (mut errors, mut prices) = (Vec::new(), Vec::new());
     for curve in &figure.curves {
         let points = curve.points.iter().map(|point| [point.error, point.price]);
@@ -179,7 +184,11 @@ fn snug(values: &[f64], most: u32) -> Axis {
     Axis::decades(&all, most)
 }
 
-fn draw_axes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), ChartError> {
+pub(super) fn draw_axes(
+    canvas: &Canvas,
+    figure: &WorkFigure,
+    plot: &Plot,
+) -> Result<(), ChartError> {
     let frame = &plot.frame;
     let small = |align| Lettering {
         px: SMALL_PX,
@@ -240,7 +249,11 @@ fn draw_enough(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
     canvas.text(&label, [at, frame.top + NOTE_PX], look)
 }
 
-fn draw_curves(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), ChartError> {
+pub(super) fn draw_curves(
+    canvas: &Canvas,
+    figure: &WorkFigure,
+    plot: &Plot,
+) -> Result<(), ChartError> {
     for curve in &figure.curves {
         let pale = mix(color(curve.color), PAPER, 0.45);
         for at in curve.others.iter().filter_map(|point| plot.place(*point)) {
@@ -264,7 +277,7 @@ fn draw_curves(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
     Ok(())
 }
 
-fn places<'a>(
+pub(super) fn places<'a>(
     curve: &'a WorkCurve,
     plot: &'a Plot,
 ) -> impl Iterator<Item = (Point, &'a WorkPoint)> {
@@ -336,7 +349,7 @@ fn draw_notes(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), C
     Ok(())
 }
 
-fn around([x, y]: Point, reach: f64) -> Frame {
+pub(super) fn around([x, y]: Point, reach: f64) -> Frame {
     Frame {
         left: x - reach,
         top: y - reach,
@@ -346,7 +359,7 @@ fn around([x, y]: Point, reach: f64) -> Frame {
 }
 
 /// Room for a label beside a point, to the right, left, above or below, that nothing takes.
-fn free([x, y]: Point, wide: f64, frame: &Frame, taken: &[Frame]) -> Option<Frame> {
+pub(super) fn free([x, y]: Point, wide: f64, frame: &Frame, taken: &[Frame]) -> Option<Frame> {
     let (gap, half) = (RING + 3.0, 0.55 * NOTE_PX);
     let [right, left] = [x + gap, x - gap - wide];
     let corners = [

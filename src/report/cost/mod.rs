@@ -1,5 +1,6 @@
 //! What a study of cost leaves in its folder: tables, a picture a scene, a page.
 
+mod effort;
 mod page;
 #[cfg(feature = "plots")]
 mod picture;
@@ -24,16 +25,17 @@ pub struct CostReport {
 fn is_stale(name: &str) -> bool {
     let picture = name.strip_suffix(".png").unwrap_or_default();
     picture.starts_with("work-precision-")
-        || ["README.md", "cost.csv", "orders.csv"].contains(&name)
+        || ["README.md", "cost.csv", "work.csv", "orders.csv"].contains(&name)
 }
 
-/// Writes `cost.csv`, `orders.csv`, the pictures and the page.
+/// Writes `cost.csv`, `work.csv`, `orders.csv`, the pictures and the page.
 ///
 /// # Errors
 /// A file that cannot be written, with its name; each file is whole or not there.
 pub fn write_cost(folder: &Folder, report: &CostReport) -> Result<()> {
     folder.remove(is_stale)?;
     folder.write("cost.csv", |out| tables::write_points(&report.scenes, out))?;
+    folder.write("work.csv", |out| tables::write_work(&report.scenes, out))?;
     folder.write("orders.csv", |out| {
         tables::write_orders(&report.scenes, out)
     })?;

@@ -5,12 +5,15 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::CostReport;
+use super::effort::{step_rows, work_rows};
 use crate::error::Result;
 use crate::report::engineering;
+use crate::report::overhead::OVERHEAD_HEADER;
 use crate::report::template::fill;
 use crate::study::cost::{
-    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, Ratio, SceneCost, Verdict,
+    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, SceneCost, Verdict,
 };
+use crate::study::{Ratio, Timing};
 
 const TEMPLATE: &str = include_str!("../../../templates/cost.md");
 
@@ -26,6 +29,8 @@ struct Page<'a> {
     repetitions: usize,
     budget: u64,
     debug_build: bool,
+    busy: bool,
+    parts: [&'static str; 5],
     scenes: Vec<ScenePart>,
 }
 
@@ -45,15 +50,17 @@ struct ScenePart {
     rankings: Vec<String>,
     verdicts: Vec<VerdictRow>,
     orders: Vec<Row>,
+    work: Vec<Row>,
+    steps: Vec<Row>,
     spent: Vec<Row>,
     refusals: Vec<String>,
 }
 
 /// A row of a table: who, and a cell for each column.
 #[derive(Serialize)]
-struct Row {
-    engine: String,
-    cells: Vec<String>,
+pub(super) struct Row {
+    pub(super) engine: String,
+    pub(super) cells: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -71,8 +78,7 @@ struct VerdictRow {
 /// A fault of the template.
 pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
     let CostOptions {
-        seed,
-        repetitions,
+        timing: Timing { seed, repetitions },
         budget,
     } = report.options;
     let scenes = report.scenes.iter();
@@ -83,6 +89,8 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         repetitions,
         budget,
         debug_build: cfg!(debug_assertions),
+        busy: report.machine.is_busy(),
+        parts: OVERHEAD_HEADER,
         scenes: scenes
             .map(|cost| scene_part(cost, seed, pictures))
             .collect(),
@@ -134,6 +142,8 @@ fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
             .map(|row| verdict(row, unit))
             .collect(),
         orders: orders(cost),
+        work: work_rows(cost),
+        steps: step_rows(cost),
         spent: cost
             .engines
             .iter()

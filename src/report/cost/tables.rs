@@ -1,4 +1,4 @@
-//! `cost.csv` and `orders.csv`: every point once, drawn and judged afterwards.
+//! `cost.csv`, `work.csv` and `orders.csv`: every point once, drawn and judged afterwards.
 
 use std::io::{self, Write};
 
@@ -41,7 +41,7 @@ impl<'a> CostRow<'a> {
             local_error: point.errors.local,
             cost_ms_per_sim_s: point.cost(),
             cost_min_ms_per_sim_s: price.map(|price| price.min),
-            steps: price.map(|price| price.steps),
+            steps: price.map(|price| price.work.steps),
             outcome: point.ending.word(),
         }
     }
@@ -54,6 +54,54 @@ pub(super) fn write_points(scenes: &[SceneCost], out: &mut dyn Write) -> io::Res
         for point in &cost.points {
             table.serialize(CostRow::new(&cost.scene.name, point))?;
         }
+    }
+    table.flush()
+}
+
+/// A row of `work.csv`; the names of the fields are the header.
+#[derive(Serialize)]
+struct WorkRow<'a> {
+    scene: &'a str,
+    engine: &'a str,
+    setting: &'a str,
+    dt: Option<f64>,
+    steps_per_sim_s: f64,
+    force_evaluations_per_sim_s: f64,
+    pair_tests_per_sim_s: f64,
+}
+
+/// Writes `work.csv`: what each run that was priced counted in a simulated second.
+pub(super) fn write_work(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let mut is_empty = true;
+    for cost in scenes {
+        for point in &cost.points {
+            let Some([steps, forces, pairs]) = cost.work_per_sim_s(point) else {
+                continue;
+            };
+            is_empty = false;
+            table.serialize(WorkRow {
+                scene: &cost.scene.name,
+                engine: &point.engine,
+                setting: &point.setting,
+                dt: point.dt,
+                steps_per_sim_s: steps,
+                force_evaluations_per_sim_s: forces,
+                pair_tests_per_sim_s: pairs,
+            })?;
+        }
+    }
+    if is_empty {
+        // No run was priced: the header, so that a program finds the table it expects.
+        table.write_record([
+            "scene",
+            "engine",
+            "setting",
+            "dt",
+            "steps_per_sim_s",
+            "force_evaluations_per_sim_s",
+            "pair_tests_per_sim_s",
+        ])?;
     }
     table.flush()
 }

@@ -1,7 +1,7 @@
 //! What accuracy costs in time: every engine over a ladder of steps, priced and judged.
 
-mod bootstrap;
 mod contender;
+mod cuts;
 mod fit;
 mod front;
 mod ladder;
@@ -10,13 +10,12 @@ mod orders;
 mod price_tag;
 mod reference;
 mod sensitivity;
-mod stopwatch;
 mod survey;
 #[cfg(test)]
 mod testing;
 
-pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
+pub use cuts::StepCost;
 pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
@@ -25,10 +24,9 @@ pub use orders::{OrderRow, Verdict};
 pub use price_tag::{Comparison, PriceTag, targets};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
-pub use stopwatch::Price;
 pub use survey::scene_cost;
 
-use super::Refusal;
+use super::{Price, Refusal, Timing};
 use crate::engine::EngineSpec;
 use crate::recording::Outcome;
 use crate::scene::Scene;
@@ -36,10 +34,8 @@ use crate::scene::Scene;
 /// How a study of cost is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CostOptions {
-    /// Seed of the order of runs and of the intervals.
-    pub seed: u64,
-    /// Rounds of timing, the warm-up not counted.
-    pub repetitions: usize,
+    /// How prices are taken.
+    pub timing: Timing,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
 }
@@ -152,6 +148,8 @@ pub struct SceneCost {
     pub engines: Vec<EngineCost>,
     /// Every run, by engine, setting and step from coarse to fine.
     pub points: Vec<CostPoint>,
+    /// What a step of the engines that take steps costs with more and more of the bodies.
+    pub step_costs: Vec<StepCost>,
     /// Engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// What the reader must know.
@@ -163,5 +161,15 @@ impl SceneCost {
     pub fn stock(&self, engine: &str) -> impl Iterator<Item = &CostPoint> {
         let of_engine = move |point: &&CostPoint| point.engine == engine && point.is_stock();
         self.points.iter().filter(of_engine)
+    }
+
+    /// What a run that was priced counted in a simulated second: steps, forces, pairs.
+    #[must_use]
+    pub fn work_per_sim_s(&self, point: &CostPoint) -> Option<[f64; 3]> {
+        let work = point.price.as_ref()?.work;
+        let counts = [work.steps, work.force_evaluations, work.pair_tests];
+        #[allow(clippy::cast_precision_loss, reason = "counts far below 2^53")]
+        let rates = counts.map(|count| count as f64 / self.priced_until);
+        Some(rates)
     }
 }

@@ -1,8 +1,8 @@
 //! The price tag: the cheapest way to an accuracy, and the accuracy for a price.
 
-use super::bootstrap::{Ratio, paired_ratio};
 use super::{CostPoint, Ending, SceneCost};
 use crate::scene::LengthUnit;
+use crate::study::{Price, Ratio, paired_ratio};
 
 /// Targets of scenes with a unit of length, m: 10, 1, 0.1 and 0.001 mm.
 const TARGETS_M: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
@@ -41,7 +41,7 @@ impl PriceTag<'_> {
         let Some((winner, least)) = kept().min_by(|a, b| a.1.median.total_cmp(&b.1.median)) else {
             return Vec::new();
         };
-        let against = |(engine, price): (_, &super::Price)| Comparison {
+        let against = |(engine, price): (_, &Price)| Comparison {
             engine,
             cheapest: winner,
             ratio: paired_ratio(&price.rounds, &least.rounds, seed),

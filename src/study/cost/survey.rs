@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::contender::{Contender, contenders};
+use super::cuts::step_costs;
 use super::ladder::{Rung, ladder};
-use super::stopwatch::{Job, Price, Stretch, prices};
 use super::{
     CostOptions, CostPoint, Ending, EngineCost, Errors, Reference, SceneCost, Stage, Watcher,
     sensitivity,
@@ -16,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::scene::Scene;
 use crate::study::Refusal;
+use crate::study::stopwatch::{Job, prices};
 
 /// A contender on one rung of its ladder.
 struct Run<'a> {
@@ -67,20 +68,18 @@ pub fn scene_cost(
     let sample = reference
         .as_ref()
         .map_or(scene.sample_count(), |known| known.rest_sample(scene));
-    let stretch = Stretch {
-        sample,
-        seconds: scene.sample_time(sample),
-    };
     let (mut points, size) = errors;
-    price(&mut points, &runs, stretch, options, watch)?;
+    price(&mut points, &runs, sample, options, watch)?;
+    let step_costs = step_costs(scene, specs, sample, options)?;
     Ok(SceneCost {
         scene: scene.clone(),
         size,
         compared_until: reference.as_ref().map(|known| known.until(scene)),
-        priced_until: stretch.seconds,
+        priced_until: scene.sample_time(sample),
         sensitivity: off,
         engines,
         points,
+        step_costs,
         refusals,
         notes,
     })
@@ -244,11 +243,11 @@ fn point(run: &Run, ending: Ending, errors: Errors) -> CostPoint {
     }
 }
 
-/// Prices the runs that finished.
+/// Prices the runs that finished, up to a sample.
 fn price(
     points: &mut [CostPoint],
     runs: &[Run],
-    stretch: Stretch,
+    sample: usize,
     options: &CostOptions,
     watch: Watcher,
 ) -> Result<()> {
@@ -258,13 +257,18 @@ fn price(
         .filter(|(point, _)| finished(point))
         .map(|(point, run)| {
             let job = Job {
-                contender: run.contender,
+                scene: &run.contender.scene,
+                spec: &run.contender.spec,
                 dt: run.rung.dt,
+                from: 0,
+                to: sample,
             };
             (point, job)
         })
         .unzip();
-    let found: Vec<Price> = prices(&jobs, stretch, options, watch)?;
+    let found = prices(&jobs, options.timing, &|done, all| {
+        watch(Stage::Pricing, done, all);
+    })?;
     for (point, price) in priced.into_iter().zip(found) {
         point.price = Some(price);
     }
@@ -275,10 +279,13 @@ fn price(
 mod tests {
     use super::*;
     use crate::engine::engine;
+    use crate::study::Timing;
 
     const OPTIONS: CostOptions = CostOptions {
-        seed: 1,
-        repetitions: 1,
+        timing: Timing {
+            seed: 1,
+            repetitions: 1,
+        },
         budget: 100,
     };
 

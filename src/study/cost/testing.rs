@@ -1,8 +1,9 @@
 //! What the tests of the study share.
 
-use super::{CostPoint, Ending, EngineCost, Errors, Price, SceneCost};
+use super::{CostPoint, Ending, EngineCost, Errors, SceneCost};
 use crate::engine::engine;
-use crate::recording::Outcome;
+use crate::recording::{Outcome, Work};
+use crate::study::Price;
 
 /// Engine, setting, and (error, cost) from coarse to fine.
 pub(super) type Ladder<'a> = (&'a str, &'a str, &'a [(f64, f64)]);
@@ -35,12 +36,7 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
                     position_max: Some(*error),
                     ..Errors::default()
                 },
-                price: Some(Price {
-                    rounds: vec![*cost; 5],
-                    median: *cost,
-                    min: *cost,
-                    steps: 1,
-                }),
+                price: Some(Price::new(vec![*cost; 7], Work::default())),
                 ending: Ending::Ran(Outcome::Finished),
             });
             dt /= 2.0;
@@ -54,6 +50,7 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
         sensitivity: None,
         engines,
         points,
+        step_costs: Vec::new(),
         refusals: Vec::new(),
         notes: Vec::new(),
     }

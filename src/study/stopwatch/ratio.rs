@@ -1,14 +1,13 @@
 //! How sure a ratio of two prices is.
 
-use rand_pcg::Pcg64;
-use rand_pcg::rand_core::{Rng, SeedableRng};
-
+use super::dice::Dice;
 use crate::study::median::median;
 
 /// Resamples of one interval.
 const RESAMPLES: usize = 2000;
-/// With fewer pairs there is no interval.
-const PAIRS_MIN: usize = 3;
+/// With fewer pairs there is no interval: not even the least and the largest of five hold the
+/// median in 95 % of cases (`1 - 2^-4`, the sign test).
+pub const PAIRS_MIN: usize = 6;
 
 /// A ratio with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,33 +28,20 @@ impl Ratio {
     }
 }
 
-/// Seeded random numbers, the same on every platform.
-pub(super) struct Dice(Pcg64);
-
-impl Dice {
-    pub(super) fn new(seed: u64) -> Self {
-        Self(Pcg64::seed_from_u64(seed))
-    }
-
-    /// Below `count`, which is small: the bias is below 1e-15.
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        let found = self.0.next_u64() % (count.max(1) as u64);
-        usize::try_from(found).unwrap_or(0)
-    }
-
-    /// Puts the items into random order (Fisher and Yates).
-    pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
-        for last in (1..items.len()).rev() {
-            items.swap(last, self.below(last + 1));
-        }
-    }
+/// The ratios `a[i] / b[i]`, measured in the same round each.
+pub(in crate::study) fn paired(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a / b).collect()
 }
 
 /// The median of the ratios `a[i] / b[i]`, measured in the same round each, with a percentile
-/// bootstrap interval; none with fewer than three rounds.
+/// bootstrap interval; none with fewer than six rounds.
+///
+/// The bootstrap knows the median of few numbers only as one of few values. Its ends are
+/// therefore rounded outwards, to the next value that it drew: the plain percentiles of seven
+/// rounds would hold the median in 87.5 % of cases instead of 95 %.
 #[must_use]
 pub fn paired_ratio(a: &[f64], b: &[f64], seed: u64) -> Option<Ratio> {
-    let ratios: Vec<f64> = a.iter().zip(b).map(|(a, b)| a / b).collect();
+    let ratios = paired(a, b);
     if ratios.len() < PAIRS_MIN || ratios.iter().any(|ratio| !ratio.is_finite()) {
         return None;
     }
@@ -69,10 +55,14 @@ pub fn paired_ratio(a: &[f64], b: &[f64], seed: u64) -> Option<Ratio> {
     };
     let mut medians: Vec<f64> = (0..RESAMPLES).map(|_| resample()).collect();
     medians.sort_by(f64::total_cmp);
+    let low = medians[RESAMPLES / 40];
+    let high = medians[RESAMPLES - 1 - RESAMPLES / 40];
+    let lower = medians.partition_point(|median| *median < low);
+    let higher = medians.partition_point(|median| *median <= high);
     Some(Ratio {
         median: median(&ratios),
-        low: medians[RESAMPLES / 40],
-        high: medians[RESAMPLES - 1 - RESAMPLES / 40],
+        low: lower.checked_sub(1).map_or(low, |place| medians[place]),
+        high: medians.get(higher).copied().unwrap_or(high),
     })
 }
 
@@ -97,15 +87,26 @@ mod tests {
         let b = vec![1.0; 8];
         let a = [0.8, 1.2, 0.9, 1.1, 0.7, 1.3, 0.95, 1.05];
         assert!(!paired_ratio(&a, &b, 1).unwrap().is_decided());
-        assert_eq!(paired_ratio(&a[..2], &b, 1), None);
+        assert_eq!(paired_ratio(&a[..5], &b, 1), None);
     }
 
+    /// Skewed noise, as of clocks: uniform numbers squared, whose median is 1/4. Of 200
+    /// intervals at 95 %, 190 hold it, with a deviation of 3.1; 181 is three of them below.
     #[test]
-    fn shuffling_keeps_every_item() {
-        let mut items: Vec<usize> = (0..50).collect();
-        Dice::new(3).shuffle(&mut items);
-        assert_ne!(items, (0..50).collect::<Vec<_>>());
-        items.sort_unstable();
-        assert_eq!(items, (0..50).collect::<Vec<_>>());
+    fn the_interval_holds_the_median_as_often_as_it_says() {
+        let mut dice = Dice::new(11);
+        for rounds in [6, 7, 8, 11] {
+            let mut holds = 0;
+            for seed in 0..200 {
+                let mut draw = || dice.below(1_000_000);
+                #[allow(clippy::cast_precision_loss, reason = "up to a million")]
+                let noise: Vec<f64> = (0..rounds)
+                    .map(|_| ((draw() as f64 + 0.5) / 1e6).powi(2))
+                    .collect();
+                let ratio = paired_ratio(&noise, &vec![1.0; rounds], seed).unwrap();
+                holds += i32::from(ratio.low <= 0.25 && 0.25 <= ratio.high);
+            }
+            assert!(holds >= 181, "{rounds} rounds: {holds} of 200");
+        }
     }
 }
