@@ -8,7 +8,7 @@ use crate::case::scene_or_case;
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, write_cost};
-use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
+use crate::study::cost::{CostOptions, Machine, PHASES_MIN, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -32,6 +32,9 @@ pub(super) struct Args {
     /// Work a run may take, in steps x (bodies + pairs)
     #[arg(long, default_value_t = 1_000_000)]
     budget: u64,
+    /// Later starts from which every engine runs again, for orders and limits; best odd
+    #[arg(long, default_value_t = 7)]
+    phases: usize,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -72,6 +75,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
             });
         }
     }
+    if args.phases < PHASES_MIN {
+        return Err(Error::Argument {
+            argument: "phases",
+            found: args.phases.to_string(),
+            remedy: format!("give at least {PHASES_MIN}: fewer have no scatter to speak of"),
+        });
+    }
     let library = args.library.library();
     let mut scenes = Vec::new();
     for name in &args.scenes {
@@ -87,6 +97,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         seed: args.seed,
         repetitions: args.repetitions,
         budget: args.budget,
+        phases: args.phases,
     };
     let folder = Folder::open(&args.out)?;
     let mut report = CostReport {
@@ -103,7 +114,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
             let doing = match stage {
                 Stage::Reference => "reference",
                 Stage::Errors => "errors",
+                Stage::Phases => "errors from later starts",
                 Stage::Pricing => "prices",
+                Stage::PushOut => "prices of push-out",
             };
             bar.set_length(all as u64);
             bar.set_position(done as u64);

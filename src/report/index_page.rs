@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::case_page::with_unit;
-use super::format::whole_percent;
+use super::format::{code, whole_percent};
 use super::output::write_json;
 use super::template::fill;
 use super::{Folder, engineering, percent};
 use crate::case::{Evidence, TRUTH};
-use crate::compare::RIGHT_WITHIN;
+use crate::compare::{RIGHT_WITHIN, Remainder};
 use crate::engine::EngineSpec;
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary, median};
@@ -204,6 +204,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
     }
     sentences.extend(energy_drifts(summaries, engines));
     sentences.extend(verdicts(summaries, engines));
+    sentences.extend(remainders(summaries, engines));
     let unfinished: Vec<_> = summaries
         .iter()
         .flat_map(|summary| summary.voices.iter().map(move |voice| (summary, voice)))
@@ -321,6 +322,27 @@ fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
     (!rows.is_empty()).then_some(said)
 }
 
+/// How often each engine's error is of which kind, where a study of cost has told.
+fn remainders(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
+    let of_engine = |spec: &EngineSpec| {
+        let all = summaries.iter().flat_map(|summary| &summary.verdicts);
+        let own = all.filter(|verdict| verdict.engine == spec.name);
+        let limits: Vec<_> = own.filter_map(|verdict| verdict.limit).collect();
+        let count = |kind: Remainder| limits.iter().filter(|limit| limit.kind == kind).count();
+        let kinds = Remainder::ALL.into_iter().filter(|kind| count(*kind) > 0);
+        let told: Vec<_> = kinds
+            .map(|kind| format!("*{}* in {}", kind.word(), count(kind)))
+            .collect();
+        (!told.is_empty()).then(|| format!("{} {}", code(&spec.name), told.join(", ")))
+    };
+    let rows: Vec<_> = engines.iter().filter_map(of_engine).collect();
+    let said = format!(
+        "What is left of the error as the step goes to 0 is: {}.",
+        rows.join("; ")
+    );
+    (!rows.is_empty()).then_some(said)
+}
+
 fn row(summary: &Summary, first: &str, second: &str) -> Row {
     let unit = summary.length_unit.symbol();
     let voice = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
@@ -380,11 +402,16 @@ fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceR
         } else {
             TRUTH
         };
-        let pair = summary.pair(&spec.name, against);
-        pair.map_or_else(
-            || "–".to_owned(),
-            |pair| with_unit(pair.position_divergence_max, unit),
-        )
+        let Some(pair) = summary.pair(&spec.name, against) else {
+            return "–".to_owned();
+        };
+        let error = with_unit(pair.position_divergence_max, unit);
+        let mut verdicts = summary.verdicts.iter();
+        let own = verdicts.find(|verdict| verdict.engine == spec.name);
+        match own.and_then(|verdict| verdict.limit) {
+            Some(limit) => format!("{error}, *{}*", limit.kind.word()),
+            None => error,
+        }
     };
     Some(ReferenceRow {
         scene: summary.scene.clone(),

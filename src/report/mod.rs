@@ -8,6 +8,7 @@ mod effects_page;
 mod files;
 mod format;
 mod index_page;
+mod limits;
 mod output;
 #[cfg(feature = "plots")]
 mod pictures;

@@ -23,3 +23,5 @@ mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod scenes;
+#[cfg(feature = "rapier")]
+mod swept_times;

@@ -1,8 +1,10 @@
 //! What a study of cost leaves in its folder: tables, a picture a scene, a page.
 
 mod page;
+mod phase_tables;
 #[cfg(feature = "plots")]
 mod picture;
+mod push_out;
 mod tables;
 
 use super::Folder;
@@ -24,10 +26,19 @@ pub struct CostReport {
 fn is_stale(name: &str) -> bool {
     let picture = name.strip_suffix(".png").unwrap_or_default();
     picture.starts_with("work-precision-")
-        || ["README.md", "cost.csv", "orders.csv"].contains(&name)
+        || [
+            "README.md",
+            "cost.csv",
+            "orders.csv",
+            "phases.csv",
+            "limits.csv",
+            "push-out.csv",
+        ]
+        .contains(&name)
 }
 
-/// Writes `cost.csv`, `orders.csv`, the pictures and the page.
+/// Writes `cost.csv`, `orders.csv`, `phases.csv`, `limits.csv`, `push-out.csv`, the pictures and
+/// the page.
 ///
 /// # Errors
 /// A file that cannot be written, with its name; each file is whole or not there.
@@ -36,6 +47,15 @@ pub fn write_cost(folder: &Folder, report: &CostReport) -> Result<()> {
     folder.write("cost.csv", |out| tables::write_points(&report.scenes, out))?;
     folder.write("orders.csv", |out| {
         tables::write_orders(&report.scenes, out)
+    })?;
+    folder.write("phases.csv", |out| {
+        phase_tables::write_phases(&report.scenes, out)
+    })?;
+    folder.write("limits.csv", |out| {
+        phase_tables::write_limits(&report.scenes, report.options.seed, out)
+    })?;
+    folder.write("push-out.csv", |out| {
+        push_out::write_push_out(&report.scenes, out)
     })?;
     #[cfg(feature = "plots")]
     for scene in &report.scenes {

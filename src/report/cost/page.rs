@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::CostReport;
+use super::push_out::PushOutPart;
+use super::{CostReport, push_out};
 use crate::error::Result;
 use crate::report::engineering;
+use crate::report::limits::estimate;
 use crate::report::template::fill;
 use crate::study::cost::{
-    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, Ratio, SceneCost, Verdict,
+    Comparison, CostOptions, CostPoint, EngineLimit, Machine, Order, PriceTag, Ratio, SceneCost,
 };
 
 const TEMPLATE: &str = include_str!("../../../templates/cost.md");
@@ -25,6 +27,7 @@ struct Page<'a> {
     seed: u64,
     repetitions: usize,
     budget: u64,
+    phases: usize,
     debug_build: bool,
     scenes: Vec<ScenePart>,
 }
@@ -43,8 +46,10 @@ struct ScenePart {
     tags: Vec<Row>,
     errors: Vec<Row>,
     rankings: Vec<String>,
-    verdicts: Vec<VerdictRow>,
+    limits: Vec<LimitLine>,
     orders: Vec<Row>,
+    phases: usize,
+    push_out: Vec<PushOutPart>,
     spent: Vec<Row>,
     refusals: Vec<String>,
 }
@@ -57,9 +62,10 @@ struct Row {
 }
 
 #[derive(Serialize)]
-struct VerdictRow {
+struct LimitLine {
     engine: String,
     kind: &'static str,
+    stays: String,
     finest: String,
     slope: String,
     floor: String,
@@ -74,6 +80,7 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         seed,
         repetitions,
         budget,
+        phases,
     } = report.options;
     let scenes = report.scenes.iter();
     let page = Page {
@@ -82,6 +89,7 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         seed,
         repetitions,
         budget,
+        phases,
         debug_build: cfg!(debug_assertions),
         scenes: scenes
             .map(|cost| scene_part(cost, seed, pictures))
@@ -128,12 +136,14 @@ fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
                 rows
             })
             .collect(),
-        verdicts: cost
-            .verdicts()
+        limits: cost
+            .limits(seed)
             .iter()
-            .map(|row| verdict(row, unit))
+            .map(|row| limit_line(row, unit))
             .collect(),
         orders: orders(cost),
+        phases: cost.phases.len(),
+        push_out: push_out::parts(cost),
         spent: cost
             .engines
             .iter()
@@ -240,19 +250,18 @@ fn ranking(target: f64, unit: &str, row: &Comparison) -> String {
     }
 }
 
-fn verdict(row: &Verdict, unit: &str) -> VerdictRow {
+fn limit_line(row: &EngineLimit, unit: &str) -> LimitLine {
     let limit = row.limit;
     let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
-    VerdictRow {
+    let stays = limit.and_then(|limit| limit.stays);
+    let slope = limit.and_then(|limit| limit.slope);
+    LimitLine {
         engine: row.engine.clone(),
         kind: limit.map_or("too few points", |limit| limit.kind.word()),
+        stays: or_dash(stays.map(|stays| estimate(&stays, unit))),
         finest: or_dash(limit.map(|limit| with(limit.finest, unit))),
-        slope: or_dash(
-            limit
-                .and_then(|limit| limit.slope)
-                .map(|slope| format!("{slope:.2}")),
-        ),
-        floor: with(row.floor, unit),
+        slope: or_dash(slope.map(|slope| format!("{slope:.2}"))),
+        floor: or_dash(limit.map(|limit| with(limit.floor, unit))),
     }
 }
 

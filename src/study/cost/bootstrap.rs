@@ -59,21 +59,33 @@ pub fn paired_ratio(a: &[f64], b: &[f64], seed: u64) -> Option<Ratio> {
     if ratios.len() < PAIRS_MIN || ratios.iter().any(|ratio| !ratio.is_finite()) {
         return None;
     }
-    let mut dice = Dice::new(seed);
-    let mut resample = || {
-        let drawn: Vec<f64> = ratios
-            .iter()
-            .map(|_| ratios[dice.below(ratios.len())])
-            .collect();
+    let [low, high] = interval(ratios.len(), seed, |drawn| {
+        let drawn: Vec<f64> = drawn.iter().map(|at| ratios[*at]).collect();
         median(&drawn)
-    };
-    let mut medians: Vec<f64> = (0..RESAMPLES).map(|_| resample()).collect();
-    medians.sort_by(f64::total_cmp);
+    });
     Some(Ratio {
         median: median(&ratios),
-        low: medians[RESAMPLES / 40],
-        high: medians[RESAMPLES - 1 - RESAMPLES / 40],
+        low,
+        high,
     })
+}
+
+/// The 95 % percentile interval of a statistic under resampling; it is given the places that
+/// were drawn, as many as there are.
+pub(super) fn interval(
+    count: usize,
+    seed: u64,
+    mut statistic: impl FnMut(&[usize]) -> f64,
+) -> [f64; 2] {
+    let mut dice = Dice::new(seed);
+    let mut drawn = vec![0; count];
+    let mut resample = || {
+        drawn.fill_with(|| dice.below(count));
+        statistic(&drawn)
+    };
+    let mut found: Vec<f64> = (0..RESAMPLES).map(|_| resample()).collect();
+    found.sort_by(f64::total_cmp);
+    [found[RESAMPLES / 40], found[RESAMPLES - 1 - RESAMPLES / 40]]
 }
 
 #[cfg(test)]

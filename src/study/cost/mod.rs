@@ -5,11 +5,16 @@ mod contender;
 mod fit;
 mod front;
 mod ladder;
+mod limit;
+mod limit_row;
 mod machine;
 mod orders;
+mod phases;
 mod price_tag;
+mod push_out;
 mod reference;
 mod sensitivity;
+mod series;
 mod stopwatch;
 mod survey;
 #[cfg(test)]
@@ -17,14 +22,19 @@ mod testing;
 
 pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
-pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
+pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
+pub use limit::{PHASES_MIN, limit};
+pub use limit_row::{LimitRow, read_limits};
 pub use machine::Machine;
-pub use orders::{OrderRow, Verdict};
+pub use orders::{EngineLimit, OrderRow};
+pub use phases::Phase;
 pub use price_tag::{Comparison, PriceTag, targets};
+pub use push_out::{Left, PushOut, PushOutRung};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
+pub use series::Series;
 pub use stopwatch::Price;
 pub use survey::scene_cost;
 
@@ -42,6 +52,8 @@ pub struct CostOptions {
     pub repetitions: usize,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
+    /// Later starts from which every engine runs again, unpriced: phases of the step.
+    pub phases: usize,
 }
 
 /// What a study is doing.
@@ -51,8 +63,12 @@ pub enum Stage {
     Reference,
     /// Every run is recorded and compared.
     Errors,
+    /// Every engine runs again from later starts.
+    Phases,
     /// Every run is timed.
     Pricing,
+    /// Runs with and without push-out are compared and timed.
+    PushOut,
 }
 
 /// Is told the stage, how much of it is done, and of how much.
@@ -152,6 +168,10 @@ pub struct SceneCost {
     pub engines: Vec<EngineCost>,
     /// Every run, by engine, setting and step from coarse to fine.
     pub points: Vec<CostPoint>,
+    /// The engines that take steps, from later starts; empty without a common reference.
+    pub phases: Vec<Phase>,
+    /// What push-out does and costs, for each engine that has it.
+    pub push_out: Vec<PushOut>,
     /// Engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// What the reader must know.

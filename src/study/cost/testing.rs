@@ -54,6 +54,8 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
         sensitivity: None,
         engines,
         points,
+        phases: Vec::new(),
+        push_out: Vec::new(),
         refusals: Vec::new(),
         notes: Vec::new(),
     }
