@@ -30,6 +30,8 @@ struct Page<'a> {
     engines: Vec<EngineRow>,
     rows: Vec<Row>,
     reference_rows: Vec<ReferenceRow>,
+    /// Whether a study of cost has told what kinds of error there are.
+    told: bool,
     versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
@@ -135,6 +137,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .iter()
             .filter_map(|summary| reference_row(summary, engines))
             .collect(),
+        told: remainders(summaries, engines).is_some(),
         versions: crate::engine::versions(),
         dt: engineering(dt),
         cases: summaries.len(),
@@ -418,4 +421,45 @@ fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceR
         reference: reference.clone(),
         errors: engines.iter().map(cell).collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Library;
+    use crate::compare::Limit;
+    use crate::engine::{DEFAULT_DT, engine};
+    use crate::study::cost::EngineLimit;
+    use crate::study::side_by_side;
+
+    #[test]
+    fn the_index_counts_the_kinds_of_error_and_names_each() {
+        let engines = [engine("lecture").unwrap(), engine("exact-fast").unwrap()];
+        let summary = |case: &str| {
+            let case = Library::Embedded.case(case).unwrap();
+            Summary::of(&side_by_side(&case, &engines, DEFAULT_DT).unwrap())
+        };
+        let mut summaries = [summary("headon-equal"), summary("kepler-circle")];
+        let page = |summaries: &[Summary]| index_page(summaries, &engines, DEFAULT_DT).unwrap();
+        assert!(!page(&summaries).contains("What is left of the error"));
+        summaries[1].tell_limits(&[EngineLimit {
+            engine: "lecture".into(),
+            limit: Some(Limit {
+                kind: Remainder::Discretisation,
+                stays: None,
+                slope: Some(1.0),
+                finest: 1e-3,
+                floor: 1e-12,
+            }),
+        }]);
+        let page = page(&summaries);
+        assert!(
+            page.contains("as the step goes to 0 is: `lecture` *discretisation* in 1."),
+            "{page}"
+        );
+        let cells = page
+            .lines()
+            .filter(|line| line.contains(", *discretisation* |"));
+        assert_eq!(cells.count(), 1, "{page}");
+    }
 }

@@ -3,14 +3,14 @@
 /// Fewer points say nothing about a slope.
 pub(super) const POINTS_MIN: usize = 4;
 /// The finest points of a ladder that a fit uses: farther up, the step is not small.
-const POINTS_MAX: usize = 8;
+pub(super) const POINTS_MAX: usize = 6;
 /// A slope flatter than this is a plateau.
 pub(super) const FLAT: f64 = 0.25;
 /// A slope with a wider half-interval than this means nothing.
 const VAGUE: f64 = 0.5;
 
 /// Two-sided 95 % quantiles of Student's t for 2, 3, ... degrees of freedom.
-const STUDENT: [f64; 5] = [4.303, 3.182, 2.776, 2.571, 2.447];
+const STUDENT: [f64; 3] = [4.303, 3.182, 2.776];
 
 /// A fitted order of convergence with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ pub fn fit_order(points: &[[f64; 2]], window: Window) -> OrderFit {
     }
 }
 
-/// The slope of 4 to 8 logarithms (dt, error), if it is one: not a plateau, and known to ±0.5.
+/// The slope of 4 to 6 logarithms (dt, error), if it is one: not a plateau, and known to ±0.5.
 pub(super) fn falling(logs: &[[f64; 2]]) -> Option<Order> {
     let (slope, error) = slope(logs);
     let half = STUDENT.get(logs.len().checked_sub(POINTS_MIN)?)? * error;
@@ -128,7 +128,7 @@ mod tests {
             let fit = fit_order(&series(10, |dt| 3.0 * dt.powf(order)), ALL);
             let found = fit.order.unwrap();
             assert!((found.order - order).abs() < 1e-9, "{found:?}");
-            assert!(found.high - found.low < 1e-6 && fit.points == 8);
+            assert!(found.high - found.low < 1e-6 && fit.points == 6);
         }
     }
 
@@ -154,8 +154,8 @@ mod tests {
         };
         let fit = fit_order(&points, window);
         assert!((fit.order.unwrap().order - 2.0).abs() < 1e-9);
-        // dt = 1/2 ... 1/128: above 2e-5 and below 0.3.
-        assert_eq!(fit.points, 7);
+        // The finest six of dt = 1/2 ... 1/128, which are above 2e-5 and below 0.3.
+        assert_eq!(fit.points, 6);
         assert_ne!(
             fit_order(&points, ALL).order.map(|o| o.order),
             fit.order.map(|o| o.order)
