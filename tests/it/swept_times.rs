@@ -12,8 +12,9 @@ use proptest::prelude::*;
 
 use crate::scenes::{body, scene};
 
-/// A handful of sums and products, each with its rounding.
-const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+/// A product and a sum for each of two bodies: half an epsilon each, and as much again for what
+/// is made of them. Of 4000 meetings the worst took an eighth of what is allowed.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// Two balls a and b on straight lines. Shape of the arrays: a, b.
 #[derive(Debug, Clone)]
