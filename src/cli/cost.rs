@@ -10,7 +10,7 @@ use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, write_cost};
 use crate::study::Timing;
-use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
+use crate::study::cost::{CostOptions, Machine, PHASES_MIN, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -37,6 +37,9 @@ pub(super) struct Args {
     /// --bodies]
     #[arg(long)]
     budget: Option<u64>,
+    /// Later starts from which every engine runs again, for orders and limits; best odd
+    #[arg(long, default_value_t = 7)]
+    phases: usize,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -80,6 +83,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
             });
         }
     }
+    if args.phases < PHASES_MIN {
+        return Err(Error::Argument {
+            argument: "phases",
+            found: args.phases.to_string(),
+            remedy: format!("give at least {PHASES_MIN}: fewer have no scatter to speak of"),
+        });
+    }
     let timing = Timing {
         seed: args.seed,
         repetitions: args.repetitions,
@@ -109,6 +119,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let options = CostOptions {
         timing,
         budget: args.budget.unwrap_or(BUDGET),
+        phases: args.phases,
     };
     let folder = Folder::open(&out("cost"))?;
     let mut report = CostReport {
@@ -125,7 +136,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
             let doing = match stage {
                 Stage::Reference => "reference",
                 Stage::Errors => "errors",
+                Stage::Phases => "errors from later starts",
                 Stage::Pricing => "prices",
+                Stage::PushOut => "prices of push-out",
             };
             bar.set_length(all as u64);
             bar.set_position(done as u64);

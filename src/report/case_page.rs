@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::format::{code, whole_percent};
 use super::template::fill;
-use super::{engineering, percent};
+use super::{engineering, limits, percent};
 use crate::case::TRUTH;
 use crate::compare::{ClusterFacts, RIGHT_WITHIN, TOUCHING, Verdict};
 use crate::error::Result;
@@ -192,7 +192,7 @@ fn verdicts(summary: &Summary) -> Vec<String> {
                 .stopped_at_s
                 .map(|time| format!("stopped at {} s", engineering(time))),
         );
-        if off.is_empty() {
+        let stands = if off.is_empty() {
             format!("{} stays within {error}.", code(&verdict.engine))
         } else {
             let off = off.join(", ");
@@ -200,6 +200,10 @@ fn verdicts(summary: &Summary) -> Vec<String> {
                 "{} leaves it: {off}; at most {error}.",
                 code(&verdict.engine)
             )
+        };
+        match &verdict.limit {
+            Some(limit) => format!("{stands} {}", limits::sentence(limit, unit)),
+            None => stands,
         }
     };
     let engines = summary.verdicts.iter().map(sentence);
@@ -362,8 +366,10 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
 mod tests {
     use super::*;
     use crate::case::Library;
+    use crate::compare::{Limit, Remainder};
     use crate::engine::{DEFAULT_DT, engine};
     use crate::recording::Recording;
+    use crate::study::cost::EngineLimit;
     use crate::study::side_by_side;
 
     /// The page of a case on the lecture's engine, with this truth if any.
@@ -395,6 +401,28 @@ mod tests {
         let names: Vec<_> = rows.iter().map(|row| row[1].as_str()).collect();
         assert_eq!(names, ["voice", "truth (reference)", "lecture"]);
         assert_eq!(rows[1][2..], rows[2][2..]);
+    }
+
+    #[test]
+    fn a_verdict_says_what_kind_of_error_it_is_about() {
+        let case = Library::Embedded.case("headon-equal").unwrap();
+        let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
+        let mut summary = Summary::of(&comparison);
+        let limit = Limit {
+            kind: Remainder::Discretisation,
+            stays: None,
+            slope: Some(1.0),
+            finest: 1e-3,
+            floor: 1e-12,
+        };
+        let page = |summary: &Summary| case_page(summary, &[], &["lecture"], false).unwrap();
+        assert!(!page(&summary).contains("The error is"));
+        summary.tell_limits(&[EngineLimit {
+            engine: "lecture".into(),
+            limit: Some(limit),
+        }]);
+        let told = "of the size). The error is *discretisation*: it shrinks with the step";
+        assert!(page(&summary).contains(told), "{}", page(&summary));
     }
 
     /// An oblique impact that is seen late has another line of centres, so another impulse.

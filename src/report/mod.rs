@@ -9,6 +9,7 @@ mod effects_page;
 mod files;
 mod format;
 mod index_page;
+mod limits;
 mod output;
 mod overhead;
 #[cfg(feature = "plots")]

@@ -249,6 +249,32 @@ fn the_study_of_cost_leaves_every_point_and_a_page() {
         assert_eq!(picture.exists(), cfg!(feature = "plots"));
     }
     assert!(orders.starts_with("scene,engine,error,order,low,high,stated_order,points\n"));
+    let read = |name: &str| fs::read_to_string(folder.join("a").join(name)).unwrap();
+    let phases = read("phases.csv");
+    assert!(phases.starts_with(
+        "scene,engine,shift_s,dt,position_error_rms,position_error_max,event_time_error,\
+         energy_error,local_error,outcome\n"
+    ));
+    // Every run of the lecture again, from seven later starts.
+    let of_lecture = |table: &str| {
+        table
+            .lines()
+            .filter(|line| line.contains(",lecture,"))
+            .count()
+    };
+    assert_eq!(of_lecture(&phases), 7 * of_lecture(&cost));
+    assert!(read("limits.csv").starts_with(
+        "scene,engine,kind,limit,limit_low,limit_high,slope,finest,floor\nheadon-equal,lecture,"
+    ));
+    let push_out = read("push-out.csv");
+    assert!(push_out.starts_with(
+        "scene,engine,without,dt,cost_ratio,cost_ratio_low,cost_ratio_high,position_error_max,\
+         position_error_max_without,energy_added,max_penetration,max_penetration_without\n"
+    ));
+    // Nothing meets in kepler-circle.
+    assert!(push_out.contains("headon-equal,lecture,lecture-in-place,"));
+    assert!(!push_out.contains("kepler-circle"));
+    assert!(page.contains("Push-out, priced separately"));
     assert!(page.contains("The price tag"));
     // Two bodies, every step one pair: k = 1, 2, ... steps a sample, 32 samples a second.
     let work = fs::read_to_string(folder.join("a/work.csv")).unwrap();
@@ -353,6 +379,7 @@ fn the_study_of_cost_says_what_it_cannot_do() {
     let scratch = tempfile::tempdir().unwrap();
     for (arguments, remedy) in [
         (["--repetitions", "0"], "above 0"),
+        (["--phases", "2"], "at least 3"),
         (["--engine", "exact"], "exact-fast"),
     ] {
         let mut command = Command::cargo_bin("carom").unwrap();

@@ -16,6 +16,7 @@ mod hard;
 mod hostile;
 mod invariants;
 mod layers;
+mod limits;
 mod oracle;
 mod orders;
 mod own_truth;
@@ -24,3 +25,5 @@ mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod scenes;
+#[cfg(feature = "rapier")]
+mod swept_times;

@@ -2,8 +2,10 @@
 
 mod effort;
 mod page;
+mod phase_tables;
 #[cfg(feature = "plots")]
 mod picture;
+mod push_out;
 mod tables;
 
 use super::Folder;
@@ -25,10 +27,20 @@ pub struct CostReport {
 fn is_stale(name: &str) -> bool {
     let picture = name.strip_suffix(".png").unwrap_or_default();
     picture.starts_with("work-precision-")
-        || ["README.md", "cost.csv", "work.csv", "orders.csv"].contains(&name)
+        || [
+            "README.md",
+            "cost.csv",
+            "work.csv",
+            "orders.csv",
+            "phases.csv",
+            "limits.csv",
+            "push-out.csv",
+        ]
+        .contains(&name)
 }
 
-/// Writes `cost.csv`, `work.csv`, `orders.csv`, the pictures and the page.
+/// Writes `cost.csv`, `work.csv`, `orders.csv`, `phases.csv`, `limits.csv`, `push-out.csv`, the pictures and
+/// the page.
 ///
 /// # Errors
 /// A file that cannot be written, with its name; each file is whole or not there.
@@ -38,6 +50,15 @@ pub fn write_cost(folder: &Folder, report: &CostReport) -> Result<()> {
     folder.write("work.csv", |out| tables::write_work(&report.scenes, out))?;
     folder.write("orders.csv", |out| {
         tables::write_orders(&report.scenes, out)
+    })?;
+    folder.write("phases.csv", |out| {
+        phase_tables::write_phases(&report.scenes, out)
+    })?;
+    folder.write("limits.csv", |out| {
+        phase_tables::write_limits(&report.scenes, report.options.timing.seed, out)
+    })?;
+    folder.write("push-out.csv", |out| {
+        push_out::write_push_out(&report.scenes, out)
     })?;
     #[cfg(feature = "plots")]
     for scene in &report.scenes {

@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::CostReport;
 use super::effort::{step_rows, work_rows};
+use super::push_out::PushOutPart;
+use super::{CostReport, push_out};
 use crate::error::Result;
 use crate::report::engineering;
+use crate::report::limits::estimate;
 use crate::report::overhead::OVERHEAD_HEADER;
 use crate::report::template::fill;
 use crate::study::cost::{
-    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, SceneCost, Verdict,
+    Comparison, CostOptions, CostPoint, EngineLimit, Machine, Order, PriceTag, SceneCost,
 };
 use crate::study::{Ratio, Timing};
 
@@ -28,6 +30,7 @@ struct Page<'a> {
     seed: u64,
     repetitions: usize,
     budget: u64,
+    phases: usize,
     debug_build: bool,
     busy: bool,
     parts: [&'static str; 5],
@@ -48,10 +51,12 @@ struct ScenePart {
     tags: Vec<Row>,
     errors: Vec<Row>,
     rankings: Vec<String>,
-    verdicts: Vec<VerdictRow>,
+    limits: Vec<LimitLine>,
     orders: Vec<Row>,
     work: Vec<Row>,
     steps: Vec<Row>,
+    phases: usize,
+    push_out: Vec<PushOutPart>,
     spent: Vec<Row>,
     refusals: Vec<String>,
 }
@@ -64,9 +69,10 @@ pub(super) struct Row {
 }
 
 #[derive(Serialize)]
-struct VerdictRow {
+struct LimitLine {
     engine: String,
     kind: &'static str,
+    stays: String,
     finest: String,
     slope: String,
     floor: String,
@@ -80,6 +86,7 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
     let CostOptions {
         timing: Timing { seed, repetitions },
         budget,
+        phases,
     } = report.options;
     let scenes = report.scenes.iter();
     let page = Page {
@@ -88,6 +95,7 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         seed,
         repetitions,
         budget,
+        phases,
         debug_build: cfg!(debug_assertions),
         busy: report.machine.is_busy(),
         parts: OVERHEAD_HEADER,
@@ -136,14 +144,16 @@ fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
                 rows
             })
             .collect(),
-        verdicts: cost
-            .verdicts()
+        limits: cost
+            .limits(seed)
             .iter()
-            .map(|row| verdict(row, unit))
+            .map(|row| limit_line(row, unit))
             .collect(),
         orders: orders(cost),
         work: work_rows(cost),
         steps: step_rows(cost),
+        phases: cost.phases.len(),
+        push_out: push_out::parts(cost),
         spent: cost
             .engines
             .iter()
@@ -250,19 +260,18 @@ fn ranking(target: f64, unit: &str, row: &Comparison) -> String {
     }
 }
 
-fn verdict(row: &Verdict, unit: &str) -> VerdictRow {
+fn limit_line(row: &EngineLimit, unit: &str) -> LimitLine {
     let limit = row.limit;
     let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
-    VerdictRow {
+    let stays = limit.and_then(|limit| limit.stays);
+    let slope = limit.and_then(|limit| limit.slope);
+    LimitLine {
         engine: row.engine.clone(),
         kind: limit.map_or("too few points", |limit| limit.kind.word()),
+        stays: or_dash(stays.map(|stays| estimate(&stays, unit))),
         finest: or_dash(limit.map(|limit| with(limit.finest, unit))),
-        slope: or_dash(
-            limit
-                .and_then(|limit| limit.slope)
-                .map(|slope| format!("{slope:.2}")),
-        ),
-        floor: with(row.floor, unit),
+        slope: or_dash(slope.map(|slope| format!("{slope:.2}"))),
+        floor: or_dash(limit.map(|limit| with(limit.floor, unit))),
     }
 }
 

@@ -141,25 +141,38 @@ impl<'a> OrdersRow<'a> {
 
 /// Writes `orders.csv`: a row for every error of every engine that takes steps.
 pub(super) fn write_orders(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let orders: Vec<_> = scenes.iter().map(|cost| (cost, cost.orders())).collect();
+    let rows = orders.iter().flat_map(|(cost, orders)| {
+        let row = |row| OrdersRow::new(&cost.scene, row);
+        orders.iter().map(row)
+    });
+    let header = [
+        "scene",
+        "engine",
+        "error",
+        "order",
+        "low",
+        "high",
+        "stated_order",
+        "points",
+    ];
+    write_rows(&header, rows, out)
+}
+
+/// Writes a table; without a row the header, so that a program finds the table it expects.
+pub(super) fn write_rows(
+    header: &[&str],
+    rows: impl Iterator<Item = impl Serialize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let rows: Vec<_> = scenes.iter().map(|cost| (cost, cost.orders())).collect();
-    if rows.iter().all(|(_, orders)| orders.is_empty()) {
-        // No engine takes steps: the header, so that a program finds the table it expects.
-        table.write_record([
-            "scene",
-            "engine",
-            "error",
-            "order",
-            "low",
-            "high",
-            "stated_order",
-            "points",
-        ])?;
+    let mut is_empty = true;
+    for row in rows {
+        table.serialize(row)?;
+        is_empty = false;
     }
-    for (cost, orders) in &rows {
-        for row in orders {
-            table.serialize(OrdersRow::new(&cost.scene, row))?;
-        }
+    if is_empty {
+        table.write_record(header)?;
     }
     table.flush()
 }

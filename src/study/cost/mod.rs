@@ -5,25 +5,35 @@ mod cuts;
 mod fit;
 mod front;
 mod ladder;
+mod limit;
+mod limit_row;
 mod machine;
 mod orders;
+mod phases;
 mod price_tag;
+mod push_out;
 mod reference;
 mod sensitivity;
+mod series;
 mod survey;
 #[cfg(test)]
 mod testing;
 
 pub use contender::{Contender, STOCK, contenders};
 pub use cuts::StepCost;
-pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
+pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
+pub use limit::{PHASES_MIN, limit};
+pub use limit_row::{LimitRow, read_limits};
 pub use machine::Machine;
-pub use orders::{OrderRow, Verdict};
+pub use orders::{EngineLimit, OrderRow};
+pub use phases::Phase;
 pub use price_tag::{Comparison, PriceTag, targets};
+pub use push_out::{Left, PushOut, PushOutRung};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
+pub use series::Series;
 pub use survey::scene_cost;
 
 use super::{Price, Refusal, Timing};
@@ -38,6 +48,8 @@ pub struct CostOptions {
     pub timing: Timing,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
+    /// Later starts from which every engine runs again, unpriced: phases of the step.
+    pub phases: usize,
 }
 
 /// What a study is doing.
@@ -47,8 +59,12 @@ pub enum Stage {
     Reference,
     /// Every run is recorded and compared.
     Errors,
+    /// Every engine runs again from later starts.
+    Phases,
     /// Every run is timed.
     Pricing,
+    /// Runs with and without push-out are compared and timed.
+    PushOut,
 }
 
 /// Is told the stage, how much of it is done, and of how much.
@@ -150,6 +166,10 @@ pub struct SceneCost {
     pub points: Vec<CostPoint>,
     /// What a step of the engines that take steps costs with more and more of the bodies.
     pub step_costs: Vec<StepCost>,
+    /// The engines that take steps, from later starts; empty without a common reference.
+    pub phases: Vec<Phase>,
+    /// What push-out does and costs, for each engine that has it.
+    pub push_out: Vec<PushOut>,
     /// Engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// What the reader must know.

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 use super::contender::{Contender, contenders};
 use super::cuts::step_costs;
 use super::ladder::{Rung, ladder};
+use super::phases::phases;
+use super::push_out::push_out;
 use super::{
     CostOptions, CostPoint, Ending, EngineCost, Errors, Reference, SceneCost, Stage, Watcher,
     sensitivity,
@@ -19,7 +21,7 @@ use crate::study::Refusal;
 use crate::study::stopwatch::{Job, prices};
 
 /// A contender on one rung of its ladder.
-struct Run<'a> {
+pub(super) struct Run<'a> {
     contender: &'a Contender,
     rung: Rung,
 }
@@ -69,8 +71,28 @@ pub fn scene_cost(
         .as_ref()
         .map_or(scene.sample_count(), |known| known.rest_sample(scene));
     let (mut points, size) = errors;
+    let stepping: Vec<&EngineSpec> = engines
+        .iter()
+        .map(|engine| &engine.spec)
+        .filter(|spec| spec.takes_steps())
+        .collect();
+    let phases = match &reference {
+        Some(known) => phases(scene, &stepping, known, options, watch)?,
+        None => Vec::new(),
+    };
+    if reference.is_some() && phases.len() < options.phases {
+        notes.push(format!(
+            "Of {} later starts exact could take {}.",
+            options.phases,
+            phases.len()
+        ));
+    }
     price(&mut points, &runs, sample, options, watch)?;
     let step_costs = step_costs(scene, specs, sample, options)?;
+    let push_out = match &reference {
+        Some(known) => push_out(scene, &stepping, known, sample, options, watch)?,
+        None => Vec::new(),
+    };
     Ok(SceneCost {
         scene: scene.clone(),
         size,
@@ -80,6 +102,8 @@ pub fn scene_cost(
         engines,
         points,
         step_costs,
+        phases,
+        push_out,
         refusals,
         notes,
     })
@@ -126,7 +150,7 @@ fn taking_part(scene: &Scene, specs: &[EngineSpec], options: &CostOptions) -> Re
 }
 
 /// Every contender on its ladder; engines without steps run once.
-fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> {
+pub(super) fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> {
     let of = |contender: &'a Contender| {
         let rungs = if contender.spec.takes_steps() {
             ladder(&contender.scene, options.budget)
@@ -143,7 +167,7 @@ fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> 
 }
 
 /// Records every run and compares it; also gives the size of the scene.
-fn errors(
+pub(super) fn errors(
     scene: &Scene,
     runs: &[Run],
     reference: Option<&Reference>,
@@ -287,6 +311,7 @@ mod tests {
             repetitions: 1,
         },
         budget: 100,
+        phases: 3,
     };
 
     fn study(text: &str, names: &[&str]) -> SceneCost {
@@ -318,7 +343,7 @@ mod tests {
         );
         let exact = cost.stock("exact-fast").next().unwrap();
         assert!(exact.dt.is_none() && exact.error().unwrap() < 1e-12);
-        assert_eq!(cost.verdicts().len(), 1);
+        assert_eq!(cost.limits(1).len(), 1);
     }
 
     /// Rest together with gravity is undefined for `exact`: the finest step stands in.

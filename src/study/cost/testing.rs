@@ -51,6 +51,8 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
         engines,
         points,
         step_costs: Vec::new(),
+        phases: Vec::new(),
+        push_out: Vec::new(),
         refusals: Vec::new(),
         notes: Vec::new(),
     }

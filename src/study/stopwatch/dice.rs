@@ -4,21 +4,21 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
 /// Draws places and orders.
-pub(super) struct Dice(Pcg64);
+pub(in crate::study) struct Dice(Pcg64);
 
 impl Dice {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(in crate::study) fn new(seed: u64) -> Self {
         Self(Pcg64::seed_from_u64(seed))
     }
 
     /// Below `count`, which is small: the bias is below 1e-15.
-    pub(super) fn below(&mut self, count: usize) -> usize {
+    pub(in crate::study) fn below(&mut self, count: usize) -> usize {
         let found = self.0.next_u64() % (count.max(1) as u64);
         usize::try_from(found).unwrap_or(0)
     }
 
     /// Puts the items into random order (Fisher and Yates).
-    pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
+    pub(in crate::study) fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));
         }

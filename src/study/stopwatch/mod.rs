@@ -7,12 +7,11 @@
 mod dice;
 mod ratio;
 
-pub(super) use ratio::paired;
+pub(super) use dice::Dice;
 pub use ratio::{PAIRS_MIN, Ratio, paired_ratio};
+pub(super) use ratio::{interval, paired};
 
 use std::time::{Duration, Instant};
-
-use dice::Dice;
 
 use super::median::median;
 use crate::engine::{EngineSpec, Simulation, prepare};

@@ -45,25 +45,46 @@ pub fn paired_ratio(a: &[f64], b: &[f64], seed: u64) -> Option<Ratio> {
     if ratios.len() < PAIRS_MIN || ratios.iter().any(|ratio| !ratio.is_finite()) {
         return None;
     }
-    let mut dice = Dice::new(seed);
-    let mut resample = || {
-        let drawn: Vec<f64> = ratios
-            .iter()
-            .map(|_| ratios[dice.below(ratios.len())])
-            .collect();
+    let found = resampled(ratios.len(), seed, |drawn| {
+        let drawn: Vec<f64> = drawn.iter().map(|at| ratios[*at]).collect();
         median(&drawn)
-    };
-    let mut medians: Vec<f64> = (0..RESAMPLES).map(|_| resample()).collect();
-    medians.sort_by(f64::total_cmp);
-    let low = medians[RESAMPLES / 40];
-    let high = medians[RESAMPLES - 1 - RESAMPLES / 40];
-    let lower = medians.partition_point(|median| *median < low);
-    let higher = medians.partition_point(|median| *median <= high);
+    });
+    let [low, high] = percentiles(&found);
+    let lower = found.partition_point(|median| *median < low);
+    let higher = found.partition_point(|median| *median <= high);
     Some(Ratio {
         median: median(&ratios),
-        low: lower.checked_sub(1).map_or(low, |place| medians[place]),
-        high: medians.get(higher).copied().unwrap_or(high),
+        low: lower.checked_sub(1).map_or(low, |place| found[place]),
+        high: found.get(higher).copied().unwrap_or(high),
     })
+}
+
+/// The 95 % percentile interval of a statistic under resampling; it is given the places that
+/// were drawn, as many as there are.
+pub(in crate::study) fn interval(
+    count: usize,
+    seed: u64,
+    statistic: impl FnMut(&[usize]) -> f64,
+) -> [f64; 2] {
+    percentiles(&resampled(count, seed, statistic))
+}
+
+/// A statistic of every resample, in order of size.
+fn resampled(count: usize, seed: u64, mut statistic: impl FnMut(&[usize]) -> f64) -> Vec<f64> {
+    let mut dice = Dice::new(seed);
+    let mut drawn = vec![0; count];
+    let mut resample = || {
+        drawn.fill_with(|| dice.below(count));
+        statistic(&drawn)
+    };
+    let mut found: Vec<f64> = (0..RESAMPLES).map(|_| resample()).collect();
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+/// Of sorted resamples, those at 2.5 % and 97.5 %.
+fn percentiles(found: &[f64]) -> [f64; 2] {
+    [found[RESAMPLES / 40], found[RESAMPLES - 1 - RESAMPLES / 40]]
 }
 
 #[cfg(test)]
