@@ -4,6 +4,7 @@ use carom::case::Library;
 use carom::compare::{Limit, Remainder};
 use carom::engine::engine;
 use carom::scene::{Drag, Effects, Scene};
+use carom::study::Timing;
 use carom::study::cost::{CostOptions, SceneCost, scene_cost};
 
 use crate::scenes::{body, scene};
@@ -12,8 +13,10 @@ use crate::scenes::{body, scene};
 fn study(scene: &Scene, names: &[&str], budget: u64) -> SceneCost {
     let specs: Vec<_> = names.iter().map(|name| engine(name).unwrap()).collect();
     let options = CostOptions {
-        seed: 1,
-        repetitions: 1,
+        timing: Timing {
+            seed: 1,
+            repetitions: 1,
+        },
         budget,
         phases: 7,
     };

@@ -141,6 +141,7 @@ mod tests {
                 repetitions: 1,
             },
             budget: 100_000,
+            phases: 3,
         };
         let costs = step_costs(&scene, &specs, 4, &options).unwrap();
         let names: Vec<_> = costs.iter().map(|cost| cost.engine.as_str()).collect();
