@@ -7,8 +7,9 @@ use serde::Serialize;
 use super::case_page::with_unit;
 use super::format::whole_percent;
 use super::output::write_json;
+use super::studies::StudyNote;
 use super::template::fill;
-use super::{Folder, engineering, percent};
+use super::{Folder, Studies, engineering, percent};
 use crate::case::{Evidence, TRUTH};
 use crate::compare::RIGHT_WITHIN;
 use crate::engine::EngineSpec;
@@ -30,6 +31,7 @@ struct Page<'a> {
     engines: Vec<EngineRow>,
     rows: Vec<Row>,
     reference_rows: Vec<ReferenceRow>,
+    studies: Vec<StudyNote>,
     versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
@@ -89,8 +91,9 @@ pub fn write_index(
     summaries: &[Summary],
     engines: &[EngineSpec],
     dt: f64,
+    studies: &Studies,
 ) -> Result<()> {
-    let page = index_page(summaries, engines, dt)?;
+    let page = index_page(summaries, engines, dt, studies)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
     let everything = Everything {
         versions: crate::engine::versions(),
@@ -105,7 +108,12 @@ pub fn write_index(
 ///
 /// # Errors
 /// A fault of the template.
-pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Result<String> {
+pub fn index_page(
+    summaries: &[Summary],
+    engines: &[EngineSpec],
+    dt: f64,
+    studies: &Studies,
+) -> Result<String> {
     let name = |place: usize| engines.get(place).map_or("", |spec| spec.name.as_str());
     let (first, second) = (name(0), name(1));
     let telling = most_telling(summaries, first, second);
@@ -135,6 +143,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .iter()
             .filter_map(|summary| reference_row(summary, engines))
             .collect(),
+        studies: studies.notes(),
         versions: crate::engine::versions(),
         dt: engineering(dt),
         cases: summaries.len(),

@@ -11,13 +11,15 @@ mod index_page;
 mod output;
 #[cfg(feature = "plots")]
 mod pictures;
+mod studies;
 mod tables;
 mod template;
 
 pub use case_page::findings;
-pub use cost::{CostReport, write_cost};
+pub use cost::CostReport;
 pub use effects_page::{effects_findings, effects_table, write_effects};
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};
 pub use index_page::{index_page, write_index};
 pub use output::{Place, write_comparison};
+pub use studies::{COST, Studies};

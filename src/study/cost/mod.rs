@@ -11,9 +11,10 @@ mod price_tag;
 mod reference;
 mod sensitivity;
 mod stopwatch;
+mod summary;
 mod survey;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
@@ -22,11 +23,14 @@ pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
 pub use machine::Machine;
 pub use orders::{OrderRow, Verdict};
-pub use price_tag::{Comparison, PriceTag, targets};
+pub use price_tag::{Comparison, MAIN_TARGET, PriceTag, Target, targets};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
 pub use stopwatch::Price;
+pub use summary::{Bid, CostSummary, Family, LimitSummary, Offer, SceneCostSummary, TagSummary};
 pub use survey::scene_cost;
+
+use serde::{Deserialize, Serialize};
 
 use super::Refusal;
 use crate::engine::EngineSpec;
@@ -34,7 +38,7 @@ use crate::recording::Outcome;
 use crate::scene::Scene;
 
 /// How a study of cost is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CostOptions {
     /// Seed of the order of runs and of the intervals.
     pub seed: u64,
