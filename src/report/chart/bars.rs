@@ -14,7 +14,7 @@ const HEADING: f64 = 46.0;
 /// Room below the groups for the labels and the name of the axis.
 const FOOT: f64 = 88.0;
 /// Between two groups.
-const BETWEEN: f64 = 20.0;
+const BETWEEN: f64 = 44.0;
 /// The names of the rows take at most this.
 const NAMES_MAX: f64 = 300.0;
 /// Share of the height of a row that its bar takes.
@@ -168,8 +168,12 @@ fn draw_grid(
     for label in &axis.labels {
         let x = frame.x(label.share);
         canvas.rule(&[[x, frame.top], [x, frame.bottom]], Pen::solid(GRID, 2.0))?;
-        let look = lettering(SMALL_PX, QUIET, Align::Center);
-        canvas.text(&label.text, [x, frame.bottom + 22.0], look)?;
+        let reach = width(&label.text, SMALL_PX)? / 2.0;
+        let room = frame.left - BETWEEN / 2.0 + reach..=frame.right + BETWEEN / 2.0 - reach;
+        if room.contains(&x) {
+            let look = lettering(SMALL_PX, QUIET, Align::Center);
+            canvas.text(&label.text, [x, frame.bottom + 22.0], look)?;
+        }
     }
     Ok(())
 }
@@ -196,7 +200,7 @@ fn draw_bar(
             bottom: middle + half,
             ..*row
         };
-        let paler = if bar.is_best { 0.35 } else { 0.72 };
+        let paler = if bar.is_best { 0.5 } else { 0.72 };
         canvas.fill(&filled, mix(color(index), PAPER, paler))?;
         if bar.is_best {
             canvas.rule(&filled.outline(), Pen::solid(INK, 4.0))?;

@@ -2,8 +2,10 @@
 
 use super::polyline::{Frame, Point};
 
-/// Between a point and its label: near, or farther off where it is crowded.
-const GAPS: [f64; 3] = [17.0, 34.0, 60.0];
+/// Between a point and a label that must be near.
+pub(super) const NEAR: [f64; 1] = [17.0];
+/// Between a point and a label that may stand farther off where it is crowded.
+pub(super) const FAR: [f64; 5] = [17.0, 34.0, 60.0, 100.0, 170.0];
 
 /// The plot, and what of it is taken.
 pub(super) struct Room {
@@ -36,9 +38,14 @@ impl Room {
 
     /// Takes room for a label of this width and height beside the first of the points that has
     /// some, where it covers nothing; failing that, where it covers lines at most.
-    pub(super) fn beside(&mut self, points: &[Point], [wide, high]: [f64; 2]) -> Option<Frame> {
+    pub(super) fn beside(
+        &mut self,
+        points: &[Point],
+        gaps: &[f64],
+        [wide, high]: [f64; 2],
+    ) -> Option<Frame> {
         let search = |taken: &[&[Frame]]| {
-            let rings = GAPS.into_iter();
+            let rings = gaps.iter().copied();
             let mut places = rings.flat_map(|gap| {
                 points
                     .iter()
@@ -118,14 +125,24 @@ mod tests {
     fn a_label_covers_no_other_label_and_stays_within() {
         let mut room = Room::new(FRAME);
         let point = [[200.0, 200.0]];
-        let first = room.beside(&point, SIZE).unwrap();
+        let first = room.beside(&point, &NEAR, SIZE).unwrap();
         assert!(first.left > 200.0);
-        let second = room.beside(&point, SIZE).unwrap();
+        let second = room.beside(&point, &NEAR, SIZE).unwrap();
         assert!(second.right < 200.0 && !overlap(&first, &second));
-        let at_the_edge = room.beside(&[[395.0, 100.0]], SIZE).unwrap();
+        let at_the_edge = room.beside(&[[395.0, 100.0]], &NEAR, SIZE).unwrap();
         assert!(at_the_edge.right < 395.0);
         room.take(FRAME);
-        assert_eq!(room.beside(&point, SIZE), None);
+        assert_eq!(room.beside(&point, &NEAR, SIZE), None);
+    }
+
+    #[test]
+    fn a_label_stands_farther_off_where_it_may_and_must() {
+        let mut room = Room::new(FRAME);
+        let point = [200.0, 200.0];
+        room.take(around(point, 90.0));
+        assert_eq!(room.beside(&[point], &NEAR, SIZE), None);
+        let label = room.beside(&[point], &FAR, SIZE).unwrap();
+        assert!(!overlap(&label, &around(point, 90.0)), "{label:?}");
     }
 
     #[test]
@@ -133,10 +150,10 @@ mod tests {
         let mut room = Room::new(FRAME);
         let [near, far] = [[200.0, 200.0], [200.0, 350.0]];
         room.spare(around(near, 90.0));
-        let label = room.beside(&[near, far], SIZE).unwrap();
+        let label = room.beside(&[near, far], &NEAR, SIZE).unwrap();
         assert!(label.top > 300.0, "{label:?}");
         room.spare(FRAME);
-        let label = room.beside(&[near, far], SIZE).unwrap();
+        let label = room.beside(&[near, far], &NEAR, SIZE).unwrap();
         assert!(label.bottom < 300.0, "{label:?}");
     }
 }

@@ -6,7 +6,7 @@ use super::canvas::{Align, Canvas, Lettering, picture};
 use super::curves::Weight;
 use super::legend::{Entry, Key, Legend};
 use super::polyline::{Frame, Point, clipped, dotted};
-use super::room::{Room, around};
+use super::room::{FAR, NEAR, Room, around};
 use super::text::{shortened, width};
 use super::theme::{
     CANVAS, FRAME, GRID, INK, LABEL_PX, LineStyle, MARGIN, PAPER, Pen, QUIET, SMALL_PX, mix,
@@ -140,10 +140,9 @@ fn draw_goals(
     Ok(())
 }
 
-/// The line where accuracy stops mattering, with its name at the lower end, where nothing is:
-/// what is better and cheaper than the front.
+/// The line where accuracy stops mattering.
 fn draw_enough(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), ChartError> {
-    let Some((error, label)) = &figure.enough else {
+    let Some((error, _)) = &figure.enough else {
         return Ok(());
     };
     let frame = &plot.frame;
@@ -155,24 +154,7 @@ fn draw_enough(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
         width: 3.0,
         style: LineStyle::Dashed,
     };
-    canvas.line(&[[x, frame.top], [x, frame.bottom]], pen)?;
-    let (room, align, at) = if x - frame.left > frame.right - x {
-        (x - frame.left, Align::Right, x - 12.0)
-    } else {
-        (frame.right - x, Align::Left, x + 12.0)
-    };
-    let label = shortened(label, NOTE_PX, room - 24.0)?;
-    let wide = width(&label, NOTE_PX)?;
-    let row = frame.bottom - NOTE_PX;
-    let left = if align == Align::Right { at - wide } else { at };
-    let paper = Frame {
-        left,
-        top: row - 0.6 * NOTE_PX,
-        right: left + wide,
-        bottom: row + 0.6 * NOTE_PX,
-    };
-    canvas.fill(&paper, PAPER)?;
-    canvas.text(&label, [at, row], letters(NOTE_PX, INK, align))
+    canvas.line(&[[x, frame.top], [x, frame.bottom]], pen)
 }
 
 /// The stairs of the front: below and to the left of them is nothing. Their round ends lie
@@ -224,18 +206,16 @@ fn draw_curves(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
 fn room(figure: &WorkFigure, plot: &Plot) -> Result<Room, ChartError> {
     let mut room = Room::new(plot.frame);
     room.take(price_label(figure, plot)?.1);
-    if let Some((error, _)) = &figure.enough {
-        if let Some(x) = plot.column(*error) {
-            room.take(Frame {
-                left: x - 4.0,
-                right: x + 4.0,
-                ..plot.frame
-            });
-        }
+    let enough = figure.enough.as_ref();
+    if let Some(x) = enough.and_then(|(error, _)| plot.column(*error)) {
         room.take(Frame {
-            top: plot.frame.bottom - 1.6 * NOTE_PX,
+            left: x - 4.0,
+            right: x + 4.0,
             ..plot.frame
         });
+    }
+    for at in dotted(&front(figure, plot), 0.0, 2.0 * DOT) {
+        room.spare(around(at, stairs().width / 2.0));
     }
     for goal in &figure.goals {
         if let Some(at) = goal
@@ -275,14 +255,22 @@ fn room(figure: &WorkFigure, plot: &Plot) -> Result<Room, ChartError> {
 /// The name of each curve beside it and the steps at its ends, where there is room.
 fn draw_labels(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), ChartError> {
     let mut room = room(figure, plot)?;
-    let mut put = |text: &str, at: &[Point], px: f64, color| {
+    let mut put = |text: &str, at: &[Point], gaps: &[f64], px: f64, color| {
         let size = [width(text, px)?, 1.1 * px];
-        let Some(free) = room.beside(at, size) else {
+        let Some(free) = room.beside(at, gaps, size) else {
             return Ok(());
         };
         let row = f64::midpoint(free.top, free.bottom);
         canvas.text(text, [free.left, row], letters(px, color, Align::Left))
     };
+    if let Some((error, label)) = &figure.enough {
+        // From below up: less than the front is nowhere, so there is room.
+        let rows = [0.06, 0.14, 0.22, 0.3, 0.5, 0.7, 0.9].map(|share| plot.frame.y(share));
+        let line: Vec<Point> = plot
+            .column(*error)
+            .map_or(Vec::new(), |x| rows.map(|y| [x, y]).to_vec());
+        put(label, &line, &NEAR, NOTE_PX, INK)?;
+    }
     let of = |weight| {
         figure
             .curves
@@ -293,7 +281,7 @@ fn draw_labels(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
         // From the finest step on: there curves are farthest apart.
         let places = plot.places(curve).into_iter().rev();
         let places: Vec<Point> = places.map(|(at, _)| at).collect();
-        put(&curve.label, &places, NAME_PX, ink(curve.color))?;
+        put(&curve.label, &places, &FAR, NAME_PX, ink(curve.color))?;
     }
     for curve in of(Weight::Main) {
         let places = plot.places(curve);
@@ -302,12 +290,12 @@ fn draw_labels(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), 
             .into_iter()
             .chain(places.iter().skip(1).next_back());
         for (at, point) in ends.filter(|(_, point)| !point.label.is_empty()) {
-            put(&point.label, &[*at], NOTE_PX, ink(curve.color))?;
+            put(&point.label, &[*at], &NEAR, NOTE_PX, ink(curve.color))?;
         }
     }
     for curve in of(Weight::Aside) {
         let places: Vec<Point> = plot.places(curve).iter().map(|(at, _)| *at).collect();
-        put(&curve.label, &places, NOTE_PX, quiet())?;
+        put(&curve.label, &places, &NEAR, NOTE_PX, quiet())?;
     }
     Ok(())
 }

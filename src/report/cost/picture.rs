@@ -84,7 +84,7 @@ fn figure(cost: &SceneCost, summary: &SceneCostSummary) -> WorkFigure {
             .collect(),
         enough: sensitivity.map(|off| {
             let moved = placed_off(off, summary.length_unit);
-            (off.distance, format!("a ball placed {moved} off does this"))
+            (off.distance, format!("a ball {moved} off"))
         }),
         goals,
     }
