@@ -111,7 +111,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 /// The study as a part of a report.
-pub(super) fn beside_report(order: &Order, folder: Folder) -> Result<()> {
+pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
     let named = order.engines.unwrap_or_default().iter().cloned();
     let mut engines: Vec<EngineSpec> = named.filter(|spec| !is_reference(spec)).collect();
     if engines.is_empty() {
@@ -123,7 +123,7 @@ pub(super) fn beside_report(order: &Order, folder: Folder) -> Result<()> {
         quiet: order.quiet,
         warns: false,
     }
-    .measure(order.scenes, &folder)
+    .measure(order.scenes, folder)
 }
 
 /// How scenes are measured.

@@ -22,7 +22,7 @@ pub(super) struct Order<'a> {
 /// A study that a report can hold: its name is that of its folder.
 pub(super) struct Study {
     name: &'static str,
-    make: fn(&Order, Folder) -> Result<()>,
+    make: fn(&Order, &Folder) -> Result<()>,
 }
 
 const STUDIES: [Study; 1] = [Study {
@@ -65,6 +65,6 @@ pub(super) fn asked(names: &[String], scenes: &[&Scene]) -> Result<Vec<&'static 
 impl Study {
     /// Makes the study and leaves its files in a folder of its own within the report.
     pub fn make(&self, order: &Order) -> Result<()> {
-        (self.make)(order, order.report.folder(self.name)?)
+        (self.make)(order, &order.report.folder(self.name)?)
     }
 }

@@ -30,6 +30,9 @@ pub fn work(figure: &WorkFigure) -> Result<Vec<u8>, ChartError> {
         let plot = layout(figure, top)?;
         draw_axes(canvas, figure, &plot)?;
         draw_goals(canvas, figure, &plot, top)?;
+        for part in clipped(&front(figure, &plot), &plot.frame) {
+            canvas.line(&part, stairs())?;
+        }
         draw_price_label(canvas, figure, &plot)?;
         draw_enough(canvas, figure, &plot)?;
         draw_curves(canvas, figure, &plot)?;
@@ -172,9 +175,6 @@ fn front(figure: &WorkFigure, plot: &Plot) -> Vec<Point> {
 }
 
 fn draw_curves(canvas: &Canvas, figure: &WorkFigure, plot: &Plot) -> Result<(), ChartError> {
-    for part in clipped(&front(figure, plot), &plot.frame) {
-        canvas.line(&part, stairs())?;
-    }
     for weight in [Weight::Aside, Weight::Main] {
         let curves = || figure.curves.iter().filter(|curve| curve.weight == weight);
         for curve in curves() {
