@@ -30,8 +30,8 @@ const STUDIES: [Study; 1] = [Study {
     make: cost::beside_report,
 }];
 
-/// Small enough that all cases take some minutes on two cores, and large enough that the
-/// lecture's own step, 0.01 s, is on the ladder of all but the largest.
+/// Small enough that all cases take about five minutes, and large enough that shots reach steps
+/// below the lecture's own, 0.01 s; long orbits and crowds do not, which `carom cost` is for.
 pub(super) const COST_OPTIONS: CostOptions = CostOptions {
     seed: 1,
     repetitions: 3,
@@ -66,5 +66,28 @@ impl Study {
     /// Makes the study and leaves its files in a folder of its own within the report.
     pub fn make(&self, order: &Order) -> Result<()> {
         (self.make)(order, &order.report.folder(self.name)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Library;
+
+    #[test]
+    fn a_study_is_made_once_and_never_in_the_folder_of_a_case() {
+        let names = |names: &[&str]| -> Vec<String> {
+            names.iter().map(|name| (*name).to_owned()).collect()
+        };
+        let mut scene = Library::Embedded.case("headon-equal").unwrap().scene;
+        let twice = asked(&names(&["cost", " cost"]), &[&scene]).unwrap();
+        assert_eq!(twice.len(), 1);
+        assert!(asked(&names(&["Cost"]), &[&scene]).is_err());
+        scene.name = "cost".to_owned();
+        let Err(said) = asked(&names(&["cost"]), &[&scene]) else {
+            panic!("the folder of the case would be taken");
+        };
+        assert!(said.to_string().contains("rename it"), "{said}");
+        assert!(asked(&[], &[&scene]).unwrap().is_empty());
     }
 }
