@@ -125,6 +125,24 @@ pub enum Error {
         /// The engine.
         name: String,
     },
+    /// No study of that name.
+    #[error("no study is called `{name}`; there are: {known}")]
+    UnknownStudy {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// What a study has left cannot be read back.
+    #[error("{path}: {message}; left out, `carom report --studies {study}` makes it anew")]
+    StoredStudy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+        /// The study.
+        study: &'static str,
+    },
     /// No scene file and no case of that name.
     #[error(
         "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}"

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use super::args::{LibraryArgs, chosen};
 use super::bodies;
 use super::output::{progress, say, warn};
+use super::studies::{COST_OPTIONS, Order};
 use crate::case::scene_or_case;
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::report::{CostReport, Folder, write_cost};
+use crate::report::{CostReport, Folder};
+use crate::scene::Scene;
 use crate::study::Timing;
-use crate::study::cost::{CostOptions, Machine, PHASES_MIN, Stage, scene_cost};
+use crate::study::cost::{CostOptions, PHASES_MIN, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -106,13 +108,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
             .run(&specs, timing, args.budget, &out, args.quiet);
     }
     let library = args.library.library();
-    let mut scenes = Vec::new();
+    let mut scenes: Vec<Scene> = Vec::new();
     for name in &args.scenes {
         let scene = scene_or_case(name, &library)?.scene;
-        if scenes
-            .iter()
-            .all(|known: &crate::scene::Scene| known.name != scene.name)
-        {
+        if scenes.iter().all(|known| known.name != scene.name) {
             scenes.push(scene);
         }
     }
@@ -122,36 +121,19 @@ pub(super) fn run(args: &Args) -> Result<()> {
         phases: args.phases,
     };
     let folder = Folder::open(&out("cost"))?;
-    let mut report = CostReport {
-        options,
-        machine: Machine::this(),
-        scenes: Vec::new(),
-    };
     for scene in &scenes {
         for warning in scene.warnings() {
             warn(format_args!("{}: {warning}", scene.name));
         }
-        let bar = progress(1, args.quiet);
-        let cost = scene_cost(scene, &specs, &options, &|stage, done, all| {
-            let doing = match stage {
-                Stage::Reference => "reference",
-                Stage::Errors => "errors",
-                Stage::Phases => "errors from later starts",
-                Stage::Pricing => "prices",
-                Stage::PushOut => "prices of push-out",
-            };
-            bar.set_length(all as u64);
-            bar.set_position(done as u64);
-            bar.set_message(format!("{}: {doing}", scene.name));
-        })?;
-        bar.finish_and_clear();
-        for note in &cost.notes {
-            warn(format_args!("{}: {note}", scene.name));
-        }
-        report.scenes.push(cost);
-        // After each scene, so that an interrupted study leaves what it has found.
-        write_cost(&folder, &report)?;
     }
+    let scenes: Vec<&Scene> = scenes.iter().collect();
+    Measuring {
+        specs: &specs,
+        options,
+        quiet: args.quiet,
+        warns: true,
+    }
+    .measure(&scenes, &folder)?;
     if args.quiet {
         return Ok(());
     }
@@ -159,4 +141,60 @@ pub(super) fn run(args: &Args) -> Result<()> {
         "Written to {}",
         folder.path().join("README.md").display()
     ))
+}
+
+/// The study as a part of a report.
+pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
+    let named = order.engines.unwrap_or_default().iter().cloned();
+    let mut engines: Vec<EngineSpec> = named.filter(|spec| !is_reference(spec)).collect();
+    if engines.is_empty() {
+        engines = specs(&[])?;
+    }
+    Measuring {
+        specs: &engines,
+        options: COST_OPTIONS,
+        quiet: order.quiet,
+        warns: false,
+    }
+    .measure(order.scenes, folder)
+}
+
+/// How scenes are measured.
+struct Measuring<'a> {
+    specs: &'a [EngineSpec],
+    options: CostOptions,
+    /// Whether no progress is shown.
+    quiet: bool,
+    /// Whether what the reader must know is told at once, and not on the page alone.
+    warns: bool,
+}
+
+impl Measuring<'_> {
+    /// Measures scene by scene and writes after each, so that an interrupted study leaves what it
+    /// has found.
+    fn measure(&self, scenes: &[&Scene], folder: &Folder) -> Result<()> {
+        let mut report = CostReport::begin(folder.clone(), self.options);
+        for (place, scene) in scenes.iter().enumerate() {
+            let bar = progress(1, self.quiet);
+            let turn = format!("{}/{}", place + 1, scenes.len());
+            let cost = scene_cost(scene, self.specs, &self.options, &|stage, done, all| {
+                let doing = match stage {
+                    Stage::Reference => "reference",
+                    Stage::Errors => "errors",
+                    Stage::Phases => "errors from later starts",
+                    Stage::Pricing => "prices",
+                    Stage::PushOut => "prices of push-out",
+                };
+                bar.set_length(all as u64);
+                bar.set_position(done as u64);
+                bar.set_message(format!("{turn} {}: {doing}", scene.name));
+            })?;
+            bar.finish_and_clear();
+            for note in cost.notes.iter().filter(|_| self.warns) {
+                warn(format_args!("{}: {note}", scene.name));
+            }
+            report.add(cost)?;
+        }
+        Ok(())
+    }
 }

@@ -9,6 +9,7 @@ mod plan;
 mod report;
 mod run;
 mod scenes;
+mod studies;
 
 use clap::{Parser, Subcommand};
 

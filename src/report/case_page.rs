@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::format::{code, whole_percent};
+use super::studies::CaseStudies;
 use super::template::fill;
 use super::{engineering, limits, percent};
 use crate::case::TRUTH;
@@ -20,7 +21,8 @@ struct Page<'a> {
     size: String,
     findings: Vec<String>,
     verdicts: Vec<String>,
-    in_report: bool,
+    /// None for a page that stands alone.
+    studies: Option<CaseStudies>,
     pictures: &'a [&'a str],
     shown: String,
     voices: Vec<VoiceRow>,
@@ -83,12 +85,12 @@ struct Settings {
     notes: Vec<String>,
 }
 
-/// The page as Markdown.
+/// The page as Markdown; `studies` are those of the report that it stands in.
 pub(super) fn case_page(
     summary: &Summary,
     pictures: &[&str],
     shown: &[&str],
-    in_report: bool,
+    studies: Option<CaseStudies>,
 ) -> Result<String> {
     let unit = summary.length_unit.symbol();
     let page = Page {
@@ -100,7 +102,7 @@ pub(super) fn case_page(
             .map(|(who, what)| format!("**{who}** {what}"))
             .collect(),
         verdicts: verdicts(summary),
-        in_report,
+        studies,
         pictures,
         shown: shown.join(", "),
         voices: summary
@@ -379,7 +381,7 @@ mod tests {
             case.truth = Some(truth(&case.scene));
         }
         let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
-        case_page(&Summary::of(&comparison), &[], &["lecture"], false).unwrap()
+        case_page(&Summary::of(&comparison), &[], &["lecture"], None).unwrap()
     }
 
     /// The cells of the table that has this in its first row: `[row][cell]`, without the rule.
@@ -415,7 +417,7 @@ mod tests {
             finest: 1e-3,
             floor: 1e-12,
         };
-        let page = |summary: &Summary| case_page(summary, &[], &["lecture"], false).unwrap();
+        let page = |summary: &Summary| case_page(summary, &[], &["lecture"], None).unwrap();
         assert!(!page(&summary).contains("The error is"));
         summary.tell_limits(&[EngineLimit {
             engine: "lecture".into(),

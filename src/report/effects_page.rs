@@ -166,10 +166,10 @@ fn cells(study: &EffectStudy, row: &EffectRow) -> [String; 10] {
         },
         row.impacts.map_or_else(nothing, |count| count.to_string()),
         difference.map_or_else(nothing, |difference| {
-            format!(
-                "-{}, +{}",
-                difference.impacts_lost, difference.impacts_gained
-            )
+            match (difference.impacts_lost, difference.impacts_gained) {
+                (0, 0) => "none".to_owned(),
+                (lost, gained) => format!("-{lost}, +{gained}"),
+            }
         }),
         price.map_or_else(nothing, |price| engineering(price.median_ms_per_sim_s)),
         price.map_or_else(nothing, |price| engineering(price.ratio)),

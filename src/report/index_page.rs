@@ -7,8 +7,9 @@ use serde::Serialize;
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
 use super::output::write_json;
+use super::studies::StudyNote;
 use super::template::fill;
-use super::{Folder, engineering, percent};
+use super::{Folder, Studies, engineering, percent};
 use crate::case::{Evidence, TRUTH};
 use crate::compare::{RIGHT_WITHIN, Remainder};
 use crate::engine::EngineSpec;
@@ -32,6 +33,7 @@ struct Page<'a> {
     reference_rows: Vec<ReferenceRow>,
     /// Whether a study of cost has told what kinds of error there are.
     told: bool,
+    studies: Vec<StudyNote>,
     versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
@@ -91,8 +93,9 @@ pub fn write_index(
     summaries: &[Summary],
     engines: &[EngineSpec],
     dt: f64,
+    studies: &Studies,
 ) -> Result<()> {
-    let page = index_page(summaries, engines, dt)?;
+    let page = index_page(summaries, engines, dt, studies)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
     let everything = Everything {
         versions: crate::engine::versions(),
@@ -107,7 +110,12 @@ pub fn write_index(
 ///
 /// # Errors
 /// A fault of the template.
-pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Result<String> {
+pub fn index_page(
+    summaries: &[Summary],
+    engines: &[EngineSpec],
+    dt: f64,
+    studies: &Studies,
+) -> Result<String> {
     let name = |place: usize| engines.get(place).map_or("", |spec| spec.name.as_str());
     let (first, second) = (name(0), name(1));
     let telling = most_telling(summaries, first, second);
@@ -138,6 +146,7 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .filter_map(|summary| reference_row(summary, engines))
             .collect(),
         told: remainders(summaries, engines).is_some(),
+        studies: studies.notes(),
         versions: crate::engine::versions(),
         dt: engineering(dt),
         cases: summaries.len(),
@@ -440,7 +449,9 @@ mod tests {
             Summary::of(&side_by_side(&case, &engines, DEFAULT_DT).unwrap())
         };
         let mut summaries = [summary("headon-equal"), summary("kepler-circle")];
-        let page = |summaries: &[Summary]| index_page(summaries, &engines, DEFAULT_DT).unwrap();
+        let page = |summaries: &[Summary]| {
+            index_page(summaries, &engines, DEFAULT_DT, &Studies::default()).unwrap()
+        };
         assert!(!page(&summaries).contains("What is left of the error"));
         summaries[1].tell_limits(&[EngineLimit {
             engine: "lecture".into(),

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-fn carom(folder: &Path, arguments: &[&str]) -> String {
+/// Runs carom in a folder and gives what it prints.
+pub fn carom(folder: &Path, arguments: &[&str]) -> String {
     let mut command = Command::cargo_bin("carom").unwrap();
     let output = command
         .current_dir(folder)
@@ -106,7 +107,8 @@ fn a_new_scene_never_replaces_a_file_unasked() {
     carom(scratch.path(), &["scenes", "new", "mine", "--force"]);
 }
 
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+/// Every file below a folder, by its path.
+pub fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -174,20 +176,30 @@ fn a_report_is_whole_and_the_same_every_time() {
             );
         }
     }
-    // Every link of every page leads to a file.
-    for (name, bytes) in &first {
-        if !name.ends_with(".md") {
-            continue;
-        }
+    assert_links(&first);
+}
+
+/// Every link of every page leads to a file; a place within a page stands in that page.
+pub fn assert_links(files: &[(String, Vec<u8>)]) {
+    for (name, bytes) in files.iter().filter(|(name, _)| name.ends_with(".md")) {
         let text = String::from_utf8(bytes.clone()).unwrap();
         let after = |mark| text.split(mark).skip(1);
         let links = after("](").chain(after("src=\""));
         for link in links.filter_map(|rest| rest.split([')', '"']).next()) {
-            let target = Path::new(name).parent().unwrap().join(link);
-            assert!(
-                link.starts_with("http") || target.exists(),
-                "{name}: {link}"
-            );
+            if link.starts_with("http") {
+                continue;
+            }
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => Path::new(name).to_owned(),
+                file => Path::new(name).parent().unwrap().join(file),
+            };
+            assert!(target.exists(), "{name}: {link}");
+            if !place.is_empty() {
+                let page = fs::read_to_string(&target).unwrap();
+                let anchor = format!("<a id=\"{place}\"></a>");
+                assert!(page.contains(&anchor), "{name}: {link}");
+            }
         }
     }
 }

@@ -25,5 +25,6 @@ mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod scenes;
+mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;

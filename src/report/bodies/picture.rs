@@ -4,7 +4,7 @@ use super::tables::label;
 use crate::engine::{EngineKind, EngineSpec, ImpulseSettings, engine};
 use crate::error::{Error, Result};
 use crate::report::chart::{
-    Crossing, LineStyle, ScalingFigure, Spent, WorkCurve, WorkFigure, WorkPoint, scaling,
+    Crossing, LineStyle, ScalingFigure, Spent, Weight, WorkCurve, WorkFigure, WorkPoint, scaling,
 };
 use crate::report::engineering;
 use crate::study::bodies::{BASE, BodiesPoint, BodiesStudy, Series, Walls};
@@ -70,6 +70,7 @@ fn figure(study: &BodiesStudy) -> ScalingFigure {
             label: label(study, *series),
             color: color(series),
             line: LineStyle::of_voice(place(&builds, series.build)),
+            weight: Weight::Main,
             points: points.filter_map(|point| point_of(study, point)).collect(),
             others: Vec::new(),
         }
@@ -96,6 +97,8 @@ fn figure(study: &BodiesStudy) -> ScalingFigure {
         spent: spent.collect(),
         spent_label: "over its budget, not run".to_owned(),
         work: WorkFigure {
+            least: 0.0,
+            goals: Vec::new(),
             title: "What a step costs as the number of bodies grows".to_owned(),
             subtitle: format!(
                 "elastic gas, {} of its {} box filled, dt {} s; {}; build {}",

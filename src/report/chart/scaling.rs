@@ -6,12 +6,13 @@ use super::axis::{Axis, fitting};
 use super::canvas::{Align, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
 use super::polyline::Frame;
+use super::room::{NEAR, Room, around};
 use super::text::width;
 use super::theme::{CANVAS, INK, MARGIN, Pen, color};
-use super::work::{
-    NOTE_PX, POINT, Plot, RING, WorkFigure, around, draw_axes, draw_curves, free, layout, pen,
-    places, ring,
-};
+use super::work::{draw_axes, draw_curves};
+use super::work_figure::WorkFigure;
+use super::work_look::{NOTE_PX, RING, pen, point_radius, ring};
+use super::work_plot::{Plot, layout};
 
 /// Length of the stroke that stands for a run over its budget.
 const STROKE: f64 = 26.0;
@@ -68,22 +69,21 @@ pub fn scaling(figure: &ScalingFigure) -> Result<Vec<u8>, ChartError> {
         for (stroke, color_of) in strokes(figure, &plot) {
             canvas.line(&stroke, Pen::solid(color(color_of), 6.0))?;
         }
-        let mut taken = taken(figure, &plot);
+        let mut room = room(figure, &plot);
         for crossing in &figure.crossings {
             let Some(at) = plot.place(crossing.at) else {
                 continue;
             };
             canvas.ring(at, RING, ring())?;
-            let wide = width(&crossing.label, NOTE_PX)?;
-            if let Some(room) = free(at, wide, &plot.frame, &taken) {
+            let size = [width(&crossing.label, NOTE_PX)?, 1.1 * NOTE_PX];
+            if let Some(free) = room.beside(&[at], &NEAR, size) {
                 let look = Lettering {
                     px: NOTE_PX,
                     color: color(crossing.color),
                     align: Align::Left,
                 };
-                let middle = f64::midpoint(room.top, room.bottom);
-                canvas.text(&crossing.label, [room.left, middle], look)?;
-                taken.push(room);
+                let middle = f64::midpoint(free.top, free.bottom);
+                canvas.text(&crossing.label, [free.left, middle], look)?;
             }
         }
         Ok(())
@@ -133,18 +133,25 @@ fn strokes(figure: &ScalingFigure, plot: &Plot) -> Vec<([[f64; 2]; 2], usize)> {
 }
 
 /// What no label may cover: points and rings.
-fn taken(figure: &ScalingFigure, plot: &Plot) -> Vec<Frame> {
-    let curves = figure.work.curves.iter();
-    let points = curves.flat_map(|curve| places(curve, plot).map(|(at, _)| around(at, POINT)));
-    let crossings = figure.crossings.iter();
-    let rings = crossings.filter_map(|crossing| Some(around(plot.place(crossing.at)?, RING)));
-    points.chain(rings).collect()
+fn room(figure: &ScalingFigure, plot: &Plot) -> Room {
+    let mut room = Room::new(plot.frame);
+    for curve in &figure.work.curves {
+        for (at, _) in plot.places(curve) {
+            room.take(around(at, point_radius(curve)));
+        }
+    }
+    for crossing in &figure.crossings {
+        if let Some(at) = plot.place(crossing.at) {
+            room.take(around(at, RING));
+        }
+    }
+    room
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::decode;
-    use super::super::{LineStyle, WorkCurve, WorkPoint};
+    use super::super::{LineStyle, Weight, WorkCurve, WorkPoint};
     use super::*;
 
     fn figure(points: &[[f64; 2]]) -> ScalingFigure {
@@ -155,11 +162,14 @@ mod tests {
         };
         ScalingFigure {
             work: WorkFigure {
+                least: 0.0,
+                goals: Vec::new(),
                 title: "t".into(),
                 subtitle: "s".into(),
                 x_label: "bodies".into(),
                 y_label: "price".into(),
                 curves: vec![WorkCurve {
+                    weight: Weight::Main,
                     label: "a".into(),
                     color: 0,
                     line: LineStyle::Solid,

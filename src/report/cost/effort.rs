@@ -1,6 +1,6 @@
 //! What a step costs, and what a simulated second takes, in rows of the page.
 
-use super::page::Row;
+use super::price_table::Row;
 use crate::engine::DEFAULT_DT;
 use crate::report::engineering;
 use crate::report::overhead::overhead_cells;

@@ -13,14 +13,14 @@ use crate::study::cost::{PushOut, PushOutRung, SceneCost};
 const SHOWN: usize = 3;
 
 /// What the template is given of one engine.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 pub(super) struct PushOutPart {
     engine: String,
     without: String,
     rows: Vec<Row>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Row {
     dt: String,
     ratio: String,

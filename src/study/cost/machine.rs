@@ -1,9 +1,9 @@
 //! The machine that prices hold for.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What of a machine is worth printing beside a price.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Model of the processor, where the system tells.
     pub processor: Option<String>,

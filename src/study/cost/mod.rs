@@ -15,9 +15,10 @@ mod push_out;
 mod reference;
 mod sensitivity;
 mod series;
+mod summary;
 mod survey;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use contender::{Contender, STOCK, contenders};
 pub use cuts::StepCost;
@@ -25,16 +26,19 @@ pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
 pub use limit::{PHASES_MIN, limit};
-pub use limit_row::{LimitRow, read_limits};
+pub use limit_row::LimitRow;
 pub use machine::Machine;
 pub use orders::{EngineLimit, OrderRow};
 pub use phases::Phase;
-pub use price_tag::{Comparison, PriceTag, targets};
+pub use price_tag::{Comparison, MAIN_TARGET, PriceTag, Target, targets};
 pub use push_out::{Left, PushOut, PushOutRung};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
 pub use series::Series;
+pub use summary::{Bid, CostSummary, Family, Offer, SceneCostSummary, TagSummary};
 pub use survey::scene_cost;
+
+use serde::{Deserialize, Serialize};
 
 use super::{Price, Refusal, Timing};
 use crate::engine::EngineSpec;
@@ -42,7 +46,7 @@ use crate::recording::Outcome;
 use crate::scene::Scene;
 
 /// How a study of cost is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CostOptions {
     /// How prices are taken.
     pub timing: Timing,

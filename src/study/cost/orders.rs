@@ -1,5 +1,7 @@
 //! Orders of convergence and limits for dt -> 0 of a study: each engine as it comes.
 
+use serde::{Deserialize, Serialize};
+
 use super::limit::ROUNDINGS;
 use super::{
     CostPoint, Errors, OrderFit, SceneCost, Sensitivity, Series, Window, fit_order, limit,
@@ -19,7 +21,7 @@ pub struct OrderRow {
 }
 
 /// The limit of an engine's position error as the step goes to 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EngineLimit {
     /// The engine.
     pub engine: String,

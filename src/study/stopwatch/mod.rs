@@ -13,6 +13,8 @@ pub(super) use ratio::{interval, paired};
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::median::median;
 use crate::engine::{EngineSpec, Simulation, prepare};
 use crate::error::Result;
@@ -40,7 +42,7 @@ pub(super) struct Job<'a> {
 }
 
 /// How often, and in which order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Timing {
     /// Seed of the order of runs and of the intervals.
     pub seed: u64,
