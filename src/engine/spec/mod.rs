@@ -7,7 +7,7 @@ mod table;
 
 pub use exact::ExactSettings;
 pub use impulse::{DragRule, Impacts, ImpulseSettings, Integrator};
-pub use rapier::{Forces, Precision, RapierSettings};
+pub use rapier::{CcdBody, Forces, LengthScale, Precision, RapierSettings};
 pub use table::{engine, engines};
 
 use serde::Serialize;

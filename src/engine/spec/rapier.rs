@@ -22,6 +22,27 @@ pub enum Forces {
     Lecture,
 }
 
+/// The length in which a Rapier world measures its normalised parameters: `length_unit`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthScale {
+    /// Scene length units a metre, as the manual has it.
+    Metre,
+    /// The radius of the smallest body, times this.
+    SmallestRadius(f64),
+}
+
+/// Which body has continuous collision detection of its own (`ccd_enabled`): it is swept against
+/// the others as well, not against walls alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CcdBody {
+    /// None.
+    None,
+    /// The one that is fastest at the start. One alone, for two such bodies pass each other by.
+    Fastest,
+}
+
 /// Settings of a Rapier world; `None` leaves Rapier's own default.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RapierSettings {
@@ -39,6 +60,12 @@ pub struct RapierSettings {
     pub max_ccd_substeps: Option<usize>,
     /// `false` lifts the cap of speeds (`normalized_max_linear_velocity`).
     pub speed_cap: bool,
+    /// What `length_unit` is.
+    pub length_scale: LengthScale,
+    /// Which body is swept against the others.
+    pub ccd_body: CcdBody,
+    /// Whether bodies may fall asleep, by Rapier's own thresholds.
+    pub sleeping: bool,
 }
 
 impl RapierSettings {
@@ -53,6 +80,9 @@ impl RapierSettings {
             contact_recycling: None,
             max_ccd_substeps: None,
             speed_cap: true,
+            length_scale: LengthScale::Metre,
+            ccd_body: CcdBody::None,
+            sleeping: false,
         }
     }
 
@@ -60,13 +90,13 @@ impl RapierSettings {
     #[must_use]
     pub fn matched() -> Self {
         Self {
-            precision: Precision::Double,
             forces: Forces::Lecture,
             solver_iterations: Some(1),
             prediction_distance: Some(1e-9),
             contact_recycling: Some(false),
             max_ccd_substeps: Some(0),
             speed_cap: false,
+            ..Self::stock(Precision::Double)
         }
     }
 
@@ -79,6 +109,22 @@ impl RapierSettings {
             Forces::Native => "drag, springs and gravity by Rapier's own features",
             Forces::Lecture => "drag, springs and gravity as the lecture's forces",
         };
+        let changed = self.changed();
+        let changed = if changed.is_empty() {
+            "stock parameters".to_owned()
+        } else {
+            changed.join(", ")
+        };
+        let sleeping = if self.sleeping {
+            "sleeping allowed"
+        } else {
+            "no sleeping"
+        };
+        format!("{krate}: {forces}; {changed}; friction 0, rotations locked, {sleeping}.")
+    }
+
+    /// Every parameter that is not Rapier's own default, in words.
+    fn changed(&self) -> Vec<String> {
         let mut changed = Vec::new();
         changed.extend(
             self.solver_iterations
@@ -99,11 +145,16 @@ impl RapierSettings {
         if !self.speed_cap {
             changed.push("no cap of speeds".to_owned());
         }
-        let changed = if changed.is_empty() {
-            "stock parameters".to_owned()
-        } else {
-            changed.join(", ")
-        };
-        format!("{krate}: {forces}; {changed}; friction 0, rotations locked, no sleeping.")
+        match self.length_scale {
+            LengthScale::Metre => {}
+            LengthScale::SmallestRadius(times) => {
+                changed.push(format!("length_unit {times} x the smallest radius"));
+            }
+        }
+        match self.ccd_body {
+            CcdBody::None => {}
+            CcdBody::Fastest => changed.push("ccd_enabled on the fastest body".to_owned()),
+        }
+        changed
     }
 }
