@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use super::args::{LibraryArgs, chosen};
 use super::output::{progress, say, warn};
-use crate::case::scene_or_case;
+use crate::case::{Library, scene_or_case};
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, write_cost};
-use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
+use crate::scene::Scene;
+use crate::study::cost::{CostOptions, Machine, Stage, Tuning, scene_cost, tune};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -32,6 +33,12 @@ pub(super) struct Args {
     /// Work a run may take, in steps x (bodies + pairs)
     #[arg(long, default_value_t = 1_000_000)]
     budget: u64,
+    /// Runs that each search of settings may take
+    #[arg(long, value_name = "N", default_value_t = 180)]
+    runs: usize,
+    /// Tune the hand-written solver and Rapier on these other scenes, separated by commas
+    #[arg(long, value_name = "SCENES", value_delimiter = ',')]
+    tune_on: Vec<String>,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -58,11 +65,44 @@ fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
     }
 }
 
+/// The scenes of these names, each once.
+fn read(names: &[String], library: &Library) -> Result<Vec<Scene>> {
+    let mut scenes: Vec<Scene> = Vec::new();
+    for name in names {
+        let scene = scene_or_case(name, library)?.scene;
+        if scenes.iter().all(|known| known.name != scene.name) {
+            scenes.push(scene);
+        }
+    }
+    Ok(scenes)
+}
+
+/// What a search finds on other scenes than those that are scored; nothing if it is not asked for.
+fn tuned(
+    tune_on: &[Scene],
+    scenes: &[Scene],
+    options: &CostOptions,
+    quiet: bool,
+) -> Result<Option<Tuning>> {
+    if tune_on.is_empty() {
+        return Ok(None);
+    }
+    let bar = progress(1, quiet);
+    let tuning = tune(tune_on, scenes, options, &|family, done, most| {
+        bar.set_length(most as u64);
+        bar.set_position(done as u64);
+        bar.set_message(format!("tuning {}", family.word()));
+    })?;
+    bar.finish_and_clear();
+    Ok(Some(tuning))
+}
+
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = specs(&args.names)?;
+    let mut specs = specs(&args.names)?;
     for (argument, is_zero) in [
         ("repetitions", args.repetitions == 0),
         ("budget", args.budget == 0),
+        ("runs", args.runs == 0),
     ] {
         if is_zero {
             return Err(Error::Argument {
@@ -73,25 +113,25 @@ pub(super) fn run(args: &Args) -> Result<()> {
         }
     }
     let library = args.library.library();
-    let mut scenes = Vec::new();
-    for name in &args.scenes {
-        let scene = scene_or_case(name, &library)?.scene;
-        if scenes
-            .iter()
-            .all(|known: &crate::scene::Scene| known.name != scene.name)
-        {
-            scenes.push(scene);
-        }
-    }
+    let scenes = read(&args.scenes, &library)?;
+    let tune_on = read(&args.tune_on, &library)?;
     let options = CostOptions {
         seed: args.seed,
         repetitions: args.repetitions,
         budget: args.budget,
+        runs: args.runs,
     };
+    let tuning = tuned(&tune_on, &scenes, &options, args.quiet)?;
+    for family in tuning.iter().flat_map(|tuning| &tuning.families) {
+        // In the place of the preset of that name, if it takes part.
+        specs.retain(|spec| spec.name != family.spec.name);
+        specs.push(family.spec.clone());
+    }
     let folder = Folder::open(&args.out)?;
     let mut report = CostReport {
         options,
         machine: Machine::this(),
+        tuning,
         scenes: Vec::new(),
     };
     for scene in &scenes {

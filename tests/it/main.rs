@@ -23,3 +23,4 @@ mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod scenes;
+mod tuning;

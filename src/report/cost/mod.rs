@@ -4,10 +4,11 @@ mod page;
 #[cfg(feature = "plots")]
 mod picture;
 mod tables;
+mod tuning;
 
 use super::Folder;
 use crate::error::Result;
-use crate::study::cost::{CostOptions, Machine, SceneCost};
+use crate::study::cost::{CostOptions, Machine, SceneCost, Tuning};
 
 /// A study of cost over some scenes.
 #[derive(Debug)]
@@ -16,6 +17,8 @@ pub struct CostReport {
     pub options: CostOptions,
     /// Where it was made.
     pub machine: Machine,
+    /// What was tuned beforehand on other scenes, if anything was.
+    pub tuning: Option<Tuning>,
     /// What was found.
     pub scenes: Vec<SceneCost>,
 }
@@ -24,10 +27,10 @@ pub struct CostReport {
 fn is_stale(name: &str) -> bool {
     let picture = name.strip_suffix(".png").unwrap_or_default();
     picture.starts_with("work-precision-")
-        || ["README.md", "cost.csv", "orders.csv"].contains(&name)
+        || ["README.md", "cost.csv", "orders.csv", "tuning.csv"].contains(&name)
 }
 
-/// Writes `cost.csv`, `orders.csv`, the pictures and the page.
+/// Writes `cost.csv`, `orders.csv`, `tuning.csv` if anything was tuned, the pictures and the page.
 ///
 /// # Errors
 /// A file that cannot be written, with its name; each file is whole or not there.
@@ -37,6 +40,9 @@ pub fn write_cost(folder: &Folder, report: &CostReport) -> Result<()> {
     folder.write("orders.csv", |out| {
         tables::write_orders(&report.scenes, out)
     })?;
+    if let Some(tuning) = &report.tuning {
+        folder.write("tuning.csv", |out| tuning::write_trials(tuning, out))?;
+    }
     #[cfg(feature = "plots")]
     for scene in &report.scenes {
         let picture = picture::work_precision_png(scene)?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::CostReport;
+use super::{CostReport, tuning};
 use crate::error::Result;
 use crate::report::engineering;
 use crate::report::template::fill;
@@ -25,6 +25,9 @@ struct Page<'a> {
     seed: u64,
     repetitions: usize,
     budget: u64,
+    runs: usize,
+    /// The section on what was tuned on other scenes.
+    tuning: Option<String>,
     debug_build: bool,
     scenes: Vec<ScenePart>,
 }
@@ -74,7 +77,10 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         seed,
         repetitions,
         budget,
+        runs,
     } = report.options;
+    let tuning = report.tuning.as_ref();
+    let tuning = tuning.map(|tuning| tuning::section(report, tuning));
     let scenes = report.scenes.iter();
     let page = Page {
         machine: &report.machine,
@@ -82,15 +88,17 @@ pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
         seed,
         repetitions,
         budget,
+        runs,
+        tuning: tuning.transpose()?,
         debug_build: cfg!(debug_assertions),
         scenes: scenes
-            .map(|cost| scene_part(cost, seed, pictures))
+            .map(|cost| scene_part(cost, &report.options, pictures))
             .collect(),
     };
     fill(TEMPLATE, page)
 }
 
-fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
+fn scene_part(cost: &SceneCost, options: &CostOptions, pictures: bool) -> ScenePart {
     let unit = cost.scene.units.length.symbol();
     let tags = cost.price_tags();
     let column = |find: &dyn Fn(usize) -> String, count: usize| (0..count).map(find).collect();
@@ -123,7 +131,7 @@ fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
         rankings: tags
             .iter()
             .flat_map(|tag| {
-                let ranked = tag.comparisons(seed).into_iter();
+                let ranked = tag.comparisons(options.seed).into_iter();
                 let rows: Vec<_> = ranked.map(|row| ranking(tag.target, unit, &row)).collect();
                 rows
             })
@@ -139,7 +147,12 @@ fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
             .iter()
             .map(|engine| Row {
                 engine: engine.spec.name.clone(),
-                cells: vec![engine.settings.to_string(), engine.runs.to_string()],
+                cells: vec![
+                    engine.settings.to_string(),
+                    engine.runs.to_string(),
+                    options.runs.saturating_sub(engine.runs).to_string(),
+                    engine.found.clone().unwrap_or_else(|| "–".to_owned()),
+                ],
             })
             .collect(),
         refusals: cost

@@ -7,6 +7,7 @@ mod front;
 mod ladder;
 mod machine;
 mod orders;
+mod own_search;
 mod price_tag;
 mod reference;
 mod sensitivity;
@@ -14,9 +15,10 @@ mod stopwatch;
 mod survey;
 #[cfg(test)]
 mod testing;
+mod tune;
 
 pub use bootstrap::{Ratio, paired_ratio};
-pub use contender::{Contender, STOCK, contenders};
+pub use contender::{Contender, STOCK, is_searched, setting};
 pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
@@ -27,6 +29,10 @@ pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
 pub use stopwatch::Price;
 pub use survey::scene_cost;
+pub use tune::{
+    Candidate, Family, FamilyTuning, Score, Search, Shot, ShotError, Trial, Tuning, TuningWatcher,
+    coordinates, effective, measure, search, tune, typical,
+};
 
 use super::Refusal;
 use crate::engine::EngineSpec;
@@ -42,6 +48,9 @@ pub struct CostOptions {
     pub repetitions: usize,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
+    /// Runs that each search of settings may take: of an engine on the very scene, of a family
+    /// on the shots tuned on.
+    pub runs: usize,
 }
 
 /// What a study is doing.
@@ -133,6 +142,9 @@ pub struct EngineCost {
     pub settings: usize,
     /// How many runs were made, each with its repetitions.
     pub runs: usize,
+    /// The settings that err least on this very scene over the ladder of steps; none for an
+    /// engine whose settings are not searched.
+    pub found: Option<String>,
 }
 
 /// The cost of accuracy on one scene.

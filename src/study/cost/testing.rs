@@ -23,6 +23,7 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
                 spec,
                 settings: 1,
                 runs: ladder.len(),
+                found: None,
             });
         }
         let mut dt = 1.0;
