@@ -294,3 +294,41 @@ fn a_time_found_by_overlap_is_seen_to_be_wrong() {
     assert_eq!(time("lecture"), Some(1.0));
     assert!(differ(time("lecture"), meeting.by_parry(), within).is_err());
 }
+
+/// The gap is an ulp of the small distance and far less than one of the places: the search took
+/// steps in which nothing moved, and gave up.
+#[test]
+fn balls_an_ulp_apart_used_to_pass_through_each_other() {
+    let meeting = Meeting {
+        radii: [2.338_651_479_971_299_5e-6, 0.001_100_578_566_552_874_6],
+        positions: [
+            Vector3::new(
+                12.293_219_803_033_459,
+                36.997_431_334_870_306,
+                36.996_982_043_467_93,
+            ),
+            Vector3::new(
+                12.294_272_548_840_26,
+                36.997_266_777_745_29,
+                36.997_266_777_745_29,
+            ),
+        ],
+        velocities: [
+            Vector3::new(
+                7_258.559_389_621_579,
+                -745.412_029_947_149_2,
+                2_299.930_157_269_188,
+            ),
+            Vector3::new(
+                -2_255.596_162_556_958_9,
+                741.767_567_018_986_9,
+                -273.346_495_386_458_9,
+            ),
+        ],
+    };
+    let d = meeting.positions[0] - meeting.positions[1];
+    let gap = d.norm() - meeting.radii[0] - meeting.radii[1];
+    assert!(0.0 < gap && gap < 1e-17, "{gap}");
+    let time = first_impact("swept", &meeting.scene()).unwrap();
+    assert!(time.is_some_and(|time| time < 1e-15), "{time:?}");
+}
