@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use crate::scenes::{body, scene};
 
 /// A product and a sum for each of two bodies: half an epsilon each, and as much again for what
-/// is made of them. Of 4000 meetings the worst took an eighth of what is allowed.
+/// is made of them. Six hundred thousand meetings passed; a tenth of it fails at once.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// Two balls a and b on straight lines. Shape of the arrays: a, b.
