@@ -36,7 +36,7 @@ pub struct ScalingFigure {
 pub struct Crossing {
     /// Number and cost.
     pub at: [f64; 2],
-    /// Index of the colour of its label.
+    /// Index of its colour.
     pub color: usize,
     /// What is written beside it, where there is room.
     pub label: String,
@@ -73,7 +73,7 @@ pub fn scaling(figure: &ScalingFigure) -> Result<Vec<u8>, ChartError> {
             let Some(at) = plot.place(crossing.at) else {
                 continue;
             };
-            canvas.ring(at, RING, ring())?;
+            canvas.ring(at, RING, Pen::solid(color(crossing.color), 3.0))?;
             let wide = width(&crossing.label, NOTE_PX)?;
             if let Some(room) = free(at, wide, &plot.frame, &taken) {
                 let look = Lettering {
