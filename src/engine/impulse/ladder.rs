@@ -5,6 +5,7 @@ use super::handling::Overlap;
 use super::motion::{Euler, Verlet};
 use super::phases::Phases;
 use super::runge_kutta::RungeKutta;
+use super::scheme::Stepped;
 use super::simulation::ImpulseSimulation;
 use super::sweep::Sweep;
 use crate::engine::spec::{DragRule, Impacts, ImpulseSettings, Integrator};
@@ -26,15 +27,15 @@ pub fn simulation(
     macro_rules! rung {
         ($motion:ty) => {
             match impacts {
-                Impacts::Overlap => Box::new(ImpulseSimulation::<$motion, Overlap<true>>::with(
+                Impacts::Overlap => Box::new(
+                    ImpulseSimulation::<Stepped<$motion, Overlap<true>>>::with(scene, grid, drag),
+                ),
+                Impacts::OverlapInPlace => Box::new(ImpulseSimulation::<
+                    Stepped<$motion, Overlap<false>>,
+                >::with(scene, grid, drag)),
+                Impacts::Swept => Box::new(ImpulseSimulation::<Stepped<$motion, Sweep>>::with(
                     scene, grid, drag,
                 )),
-                Impacts::OverlapInPlace => Box::new(
-                    ImpulseSimulation::<$motion, Overlap<false>>::with(scene, grid, drag),
-                ),
-                Impacts::Swept => {
-                    Box::new(ImpulseSimulation::<$motion, Sweep>::with(scene, grid, drag))
-                }
             }
         };
     }
@@ -44,9 +45,9 @@ pub fn simulation(
         (Integrator::VelocityVerlet, _) => rung!(Verlet),
         (Integrator::RungeKutta4, _) => rung!(RungeKutta),
         // Only the sweep takes steps of an integrator's own choice.
-        (Integrator::DormandPrince, _) => Box::new(
-            ImpulseSimulation::<DormandPrince, Sweep>::with(scene, grid, drag),
-        ),
+        (Integrator::DormandPrince, _) => Box::new(ImpulseSimulation::<
+            Stepped<DormandPrince, Sweep>,
+        >::with(scene, grid, drag)),
     }
 }
 

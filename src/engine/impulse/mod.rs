@@ -14,12 +14,14 @@ mod dormand_prince;
 mod forces;
 mod handling;
 mod ladder;
+mod meeting;
 mod motion;
 mod notes;
 mod observer;
 mod path;
 mod phases;
 mod runge_kutta;
+mod scheme;
 mod simulation;
 mod sweep;
 

@@ -1,13 +1,13 @@
 //! Impacts, cushions and rests at the time at which they happen within a step.
 
-use super::contacts::{approach, hit};
+use super::contacts::hit;
 use super::handling::{Handling, Taken, pairs};
+use super::meeting::{Along, contact, cushion, slowed};
 use super::motion::Motion;
 use super::observer::Observer;
-use super::path::Path;
+use super::path::{Path, Way};
 use super::phases::Phases;
 use super::{Particle, cushions};
-use crate::physics::closing::{Opening, Search, first_closing};
 use crate::physics::{Vector3, length};
 use crate::recording::{EventKind, Wall};
 
@@ -98,7 +98,16 @@ impl Sweep {
             }
         }));
         self.travel.clear();
-        self.travel.extend(self.paths.iter().map(Path::travel));
+        self.travel
+            .extend(self.paths.iter().map(|path| path.travel(length)));
+    }
+
+    fn along(&self, body: usize) -> Along<'_, Path> {
+        Along {
+            path: &self.paths[body],
+            radius: self.start[body].radius,
+            travel: self.travel[body],
+        }
     }
 
     /// The first event on the paths; of simultaneous ones contacts, then cushions, then rests.
@@ -118,10 +127,9 @@ impl Sweep {
         if phases.contact.is_some() {
             for a in 0..self.paths.len() {
                 for b in a + 1..self.paths.len() {
-                    offer(
-                        self.contact(a, b, length, instant),
-                        EventKind::Contact { a, b },
-                    );
+                    let pair = [a, b].map(|body| self.along(body));
+                    let time = contact(&pair, length, instant);
+                    offer(time, EventKind::Contact { a, b });
                 }
             }
         }
@@ -129,7 +137,7 @@ impl Sweep {
             let half = cushions.half_extents();
             for body in 0..self.paths.len() {
                 for wall in Wall::ALL {
-                    let time = self.cushion(body, wall, half, length, instant);
+                    let time = cushion(&self.along(body), wall, half, length, instant);
                     offer(time, EventKind::Cushion { body, wall });
                 }
             }
@@ -141,86 +149,6 @@ impl Sweep {
         }
         first
     }
-
-    fn contact(&self, a: usize, b: usize, length: f64, instant: f64) -> Option<f64> {
-        let (one, other) = (&self.paths[a], &self.paths[b]);
-        let reach = self.start[a].radius + self.start[b].radius;
-        let apart = self.start[b].position - self.start[a].position;
-        let room = reach + self.travel[a] + self.travel[b];
-        if apart.norm_squared() > room * room {
-            return None;
-        }
-        let bend = one.bend_against(other);
-        closing(length, instant, |t| {
-            let ((xa, va), (xb, vb)) = (one.at(t), other.at(t));
-            let distance = (xb - xa).norm();
-            Opening {
-                width: distance - reach,
-                rate: approach(&(xa - xb), distance, &va, &vb),
-                bend,
-            }
-        })
-    }
-
-    fn cushion(
-        &self,
-        body: usize,
-        wall: Wall,
-        half: [f64; 3],
-        length: f64,
-        instant: f64,
-    ) -> Option<f64> {
-        let (axis, side) = wall.axis_and_side();
-        let (path, start) = (&self.paths[body], &self.start[body]);
-        let room = half[axis] - start.radius;
-        if room - start.position[axis] * side > self.travel[body] {
-            return None;
-        }
-        let bend = path.bend_along(axis);
-        closing(length, instant, |t| {
-            let (x, v) = path.at(t);
-            Opening {
-                width: room - x[axis] * side,
-                rate: -v[axis] * side,
-                bend,
-            }
-        })
-    }
-}
-
-/// The first time at which a gap closes, none if it does not up to the end.
-fn closing(length: f64, instant: f64, at: impl Fn(f64) -> Opening<f64>) -> Option<f64> {
-    let mut from = 0.0;
-    // A search rests after two hundred steps, each of them safe; a second round is for grazes.
-    for _ in 0..2 {
-        match first_closing(length - from, instant, |t| at(from + t)) {
-            Search::Closes(time) if from + time <= length => return Some(from + time),
-            Search::OpenUntil(time) => from += time,
-            Search::Closes(_) | Search::Open => return None,
-        }
-    }
-    None
-}
-
-/// When a moving body has become slower than that.
-fn slowed(path: &Path, speed: f64, until: f64) -> Option<f64> {
-    let at = |t: f64| length(&path.at(t).1);
-    if at(0.0) == 0.0 || at(until) >= speed {
-        return None;
-    }
-    if at(0.0) < speed {
-        return Some(0.0);
-    }
-    let (mut fast, mut slow) = (0.0, until);
-    for _ in 0..60 {
-        let middle = 0.5 * (fast + slow);
-        if at(middle) < speed {
-            slow = middle;
-        } else {
-            fast = middle;
-        }
-    }
-    Some(slow)
 }
 
 /// Lets an event happen to the particles, `left` before the end of the step.
