@@ -39,6 +39,8 @@ pub enum Integrator {
     RungeKutta4,
     /// Seven stages and steps by their own error, swept impacts. Order 5 in the longest step.
     DormandPrince,
+    /// Closed forms under drag and dampers, forces that keep the energy in any step. Order 2.
+    EnergyMomentum,
 }
 
 /// How drag acts in the hand-written solver.
@@ -61,6 +63,8 @@ pub enum Impacts {
     OverlapInPlace,
     /// At the time of impact within the step.
     Swept,
+    /// The same, with all of one instant and all that stay in touch solved together.
+    Together,
 }
 
 /// Numerical choices of the hand-written solver.
@@ -87,7 +91,7 @@ impl ImpulseSettings {
     pub fn order(self) -> u8 {
         match self.integrator {
             Integrator::SymplecticEuler => 1,
-            Integrator::VelocityVerlet => 2,
+            Integrator::VelocityVerlet | Integrator::EnergyMomentum => 2,
             Integrator::RungeKutta4 => 4,
             Integrator::DormandPrince => 5,
         }
@@ -99,7 +103,7 @@ impl ImpulseSettings {
     pub fn order_through_impacts(self) -> u8 {
         match self.impacts {
             Impacts::Overlap | Impacts::OverlapInPlace => 1,
-            Impacts::Swept => self.order().min(4),
+            Impacts::Swept | Impacts::Together => self.order().min(4),
         }
     }
 
@@ -109,6 +113,9 @@ impl ImpulseSettings {
             Integrator::VelocityVerlet => "Velocity Verlet",
             Integrator::RungeKutta4 => "Runge-Kutta of order 4",
             Integrator::DormandPrince => "Dormand-Prince 5(4) with steps by their own error",
+            Integrator::EnergyMomentum => {
+                "Closed forms and energy-momentum steps, as short as each effect asks for"
+            }
         };
         let drag = match self.drag {
             DragRule::Force => "",
@@ -120,6 +127,10 @@ impl ImpulseSettings {
             }
             Impacts::OverlapInPlace => "impulses at the first overlap, no push-out",
             Impacts::Swept => "impulses at the time of impact",
+            Impacts::Together => {
+                "impulses at the time of impact, those of one instant and pushes that last solved \
+                 together"
+            }
         };
         format!("{motion}{drag}, {impacts}.")
     }
@@ -386,6 +397,15 @@ pub fn engines() -> Vec<EngineSpec> {
             "adaptive",
             "Dormand-Prince 5(4), steps by their own error, impacts at their time",
             rung(Integrator::DormandPrince, DragRule::Force, Impacts::Swept),
+        ),
+        row(
+            "robust",
+            "survives everything: steps by each effect's limit, contacts solved together",
+            rung(
+                Integrator::EnergyMomentum,
+                DragRule::Exponential,
+                Impacts::Together,
+            ),
         ),
     ]
 }

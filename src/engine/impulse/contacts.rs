@@ -71,7 +71,12 @@ pub(super) fn approach(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector
 }
 
 #[inline]
-fn line_of_action(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector3) -> Vector3 {
+pub(super) fn line_of_action(
+    apart: &Vector3,
+    distance: f64,
+    va: &Vector3,
+    vb: &Vector3,
+) -> Vector3 {
     if distance > 0.0 {
         apart / distance
     } else {

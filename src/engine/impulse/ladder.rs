@@ -4,6 +4,7 @@ use super::dormand_prince::DormandPrince;
 use super::handling::Overlap;
 use super::motion::{Euler, Verlet};
 use super::phases::Phases;
+use super::robust::Robust;
 use super::runge_kutta::RungeKutta;
 use super::scheme::Stepped;
 use super::simulation::ImpulseSimulation;
@@ -33,9 +34,9 @@ pub fn simulation(
                 Impacts::OverlapInPlace => Box::new(ImpulseSimulation::<
                     Stepped<$motion, Overlap<false>>,
                 >::with(scene, grid, drag)),
-                Impacts::Swept => Box::new(ImpulseSimulation::<Stepped<$motion, Sweep>>::with(
-                    scene, grid, drag,
-                )),
+                Impacts::Swept | Impacts::Together => Box::new(ImpulseSimulation::<
+                    Stepped<$motion, Sweep>,
+                >::with(scene, grid, drag)),
             }
         };
     }
@@ -44,6 +45,9 @@ pub fn simulation(
         (Integrator::SymplecticEuler, DragRule::Exponential) => rung!(Euler<true>),
         (Integrator::VelocityVerlet, _) => rung!(Verlet),
         (Integrator::RungeKutta4, _) => rung!(RungeKutta),
+        (Integrator::EnergyMomentum, _) => {
+            Box::new(ImpulseSimulation::<Robust>::with(scene, grid, drag))
+        }
         // Only the sweep takes steps of an integrator's own choice.
         (Integrator::DormandPrince, _) => Box::new(ImpulseSimulation::<
             Stepped<DormandPrince, Sweep>,
@@ -55,7 +59,7 @@ pub fn simulation(
 #[must_use]
 pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let phases = Phases::of(scene, settings.drag);
-    let swept = settings.impacts == Impacts::Swept;
+    let swept = matches!(settings.impacts, Impacts::Swept | Impacts::Together);
     let forces = [
         present(phases.forces, "clear", "forces to zero".to_owned()),
         present(
@@ -78,7 +82,7 @@ pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let motion = motion_phases(&phases, settings.integrator);
     let push = match settings.impacts {
         Impacts::Overlap => true,
-        Impacts::OverlapInPlace | Impacts::Swept => false,
+        Impacts::OverlapInPlace | Impacts::Swept | Impacts::Together => false,
     };
     let walls = |half_height: Option<f64>| if half_height.is_some() { 6 } else { 4 };
     let cushions = phases.cushions.map(|cushions| match (swept, push) {
@@ -150,6 +154,16 @@ fn motion_phases(phases: &Phases, integrator: Integrator) -> [Option<Phase>; 3] 
                 true,
                 "motion",
                 "four stages of all forces (Runge-Kutta)".to_owned(),
+            ),
+            None,
+            None,
+        ],
+        Integrator::EnergyMomentum => [
+            present(
+                true,
+                "motion",
+                "closed forms under drag and dampers; forces that do the work of their potentials"
+                    .to_owned(),
             ),
             None,
             None,

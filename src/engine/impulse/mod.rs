@@ -20,6 +20,7 @@ mod notes;
 mod observer;
 mod path;
 mod phases;
+mod robust;
 mod runge_kutta;
 mod scheme;
 mod simulation;
