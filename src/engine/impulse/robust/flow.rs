@@ -160,16 +160,16 @@ impl Flow {
         }
     }
 
-    /// Change of the velocities that unit pushes over the step make: `P/m`. Zero for two bodies
-    /// that no damper ties.
+    /// How far a unit push over the step on one body moves another: `Q/m`. Zero for two bodies that
+    /// no damper ties.
     pub(super) fn mobility(&self, one: usize, other: usize, particles: &[Particle]) -> f64 {
         if one == other && !self.is_clustered[one] {
-            return self.factors[one][1] / particles[one].mass;
+            return self.factors[one][2] / particles[one].mass;
         }
         let place = |cluster: &Cluster, body| cluster.bodies.iter().position(|b| *b == body);
         let shared = self.clusters.iter().find_map(|cluster| {
             let at = (place(cluster, one)?, place(cluster, other)?);
-            Some(cluster.factors[1][at] / cluster.masses[at.1])
+            Some(cluster.factors[2][at] / cluster.masses[at.1])
         });
         shared.unwrap_or(0.0)
     }

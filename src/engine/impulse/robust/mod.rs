@@ -11,6 +11,7 @@ mod flow;
 mod limits;
 mod mean_force;
 mod overlap;
+mod stick;
 mod together;
 mod touch;
 
@@ -212,9 +213,10 @@ impl Robust {
         while left > 0.0 {
             let wanted = self.wanted(phases, particles, dt, &spent);
             let mut length = if wanted < left { wanted } else { left };
+            touching(phases, particles, &mut self.touches);
+            self.end_low_bounces(particles, dt);
             self.start.clear();
             self.start.extend_from_slice(particles);
-            touching(phases, particles, &mut self.touches);
             length = self.press_on(phases, particles, dt, length, &mut spent);
             spent.substeps += 1;
             let Some(next) = self.first(phases, particles, length, dt, &mut spent) else {
@@ -227,6 +229,17 @@ impl Robust {
             self.meet(phases, particles, dt, next, left, &mut spent, observer);
         }
         spent.taken
+    }
+
+    /// Ends bounces that would not rise above what counts as touching.
+    fn end_low_bounces(&self, particles: &mut [Particle], dt: f64) {
+        let rate = |touch: &Touch| touch.rate(particles).abs();
+        let is_low = |touch: &&Touch| rate(touch) <= touch.slowest_bounce(particles);
+        let low = || self.touches.iter().filter(is_low);
+        if low().any(|touch| rate(touch) > touch.still(particles, dt)) {
+            let low: Vec<Touch> = low().copied().collect();
+            stick::bring_to_rest(particles, &low);
+        }
     }
 
     /// The longest step that the effects allow, longer when very many were taken already.
@@ -280,7 +293,7 @@ impl Robust {
         let resting = self.resting(particles, dt);
         loop {
             length = self.travel(phases, particles, length, spent);
-            if resting.is_empty() || !self.press(phases, particles, &resting, dt, length, spent) {
+            if resting.is_empty() || !self.press(phases, particles, &resting, length, spent) {
                 return length;
             }
             let turn = resting
@@ -313,51 +326,59 @@ impl Robust {
         self.touches.iter().filter(rests).copied().collect()
     }
 
-    /// Finds the pushes that keep resting surfaces from closing by the end of the step, and takes
-    /// the step with them; whether any are needed.
+    /// Finds the pushes that keep the gaps of resting surfaces from shrinking over the step, and
+    /// takes the step with them; whether any are needed.
     ///
-    /// Equation: `l >= 0`, rates at the end `u + A l >= 0`, one of the two zero for each. As the
-    /// rates are zero at the start, pushes do no work on a touch that stays.
+    /// Equation: `l >= 0`, change of the gaps `g1 - g0 + B l >= 0`, one of the two zero for each.
+    /// The push of a pair acts along its mean separation, as forces between bodies do, and so
+    /// works `l (g1 - g0)`: nothing, also where surfaces slide and turn.
     fn press(
         &mut self,
         phases: &Phases,
         particles: &mut [Particle],
         resting: &[Touch],
-        dt: f64,
         length: f64,
         spent: &mut Spent,
     ) -> bool {
         let mut sizes = vec![0.0; resting.len()];
         for round in 0..PUSH_ROUNDS {
-            let rates: Vec<f64> = resting.iter().map(|touch| touch.rate(particles)).collect();
-            let off = |((touch, rate), size): ((&Touch, &f64), &f64)| {
-                let still = touch.still(particles, dt);
-                *rate < -still || (*size > 0.0 && *rate > still)
+            let ends: Vec<Touch> = resting
+                .iter()
+                .map(|touch| touch.mean(phases, &self.start, particles))
+                .collect();
+            let changes: Vec<f64> = resting
+                .iter()
+                .zip(&ends)
+                .map(|(t, end)| end.gap - t.gap)
+                .collect();
+            let off = |((touch, change), size): ((&Touch, &f64), &f64)| {
+                let rounding = touch.rounding();
+                *change < -rounding || (*size > 0.0 && *change > rounding)
             };
-            if !resting.iter().zip(&rates).zip(&sizes).any(off) {
+            if !resting.iter().zip(&changes).zip(&sizes).any(off) {
                 return round > 0;
             }
             let (flow, start) = (&self.flow, &self.start);
-            let entry = |i: usize, j: usize| pressing(&resting[i], &resting[j], flow, start);
+            let entry = |i: usize, j: usize| pressing(&ends[i], &ends[j], flow, start);
             let row = |i: usize| {
                 (0..sizes.len())
                     .map(|j| entry(i, j) * sizes[j])
                     .sum::<f64>()
             };
-            let free: Vec<f64> = rates
+            let free: Vec<f64> = changes
                 .iter()
                 .enumerate()
-                .map(|(i, rate)| rate - row(i))
+                .map(|(i, g)| g - row(i))
                 .collect();
             sizes = pushes(&entry, &free, &vec![true; free.len()]);
             self.pushes.fill(Vector3::zeros());
-            for (touch, size) in resting.iter().zip(&sizes) {
+            for (touch, size) in ends.iter().zip(&sizes) {
                 for (body, arm) in touch.arms() {
                     self.pushes[body] += arm * *size;
                 }
             }
             particles.clone_from_slice(&self.start);
-            self.travel(phases, particles, length, spent);
+            self.try_travel(phases, particles, length, spent);
         }
         true
     }
@@ -627,7 +648,7 @@ fn turn_back(particles: &mut [Particle]) {
     }
 }
 
-/// What a unit push at one touch over the step does to the rate of another at its end.
+/// What a unit push at one touch over the step does to the gap of another at its end.
 fn pressing(one: &Touch, other: &Touch, flow: &Flow, particles: &[Particle]) -> f64 {
     if flow.is_coupled() {
         let all = one.arms().flat_map(|(body, arm)| {

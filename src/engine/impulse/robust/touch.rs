@@ -28,6 +28,8 @@ pub(super) struct Touch {
     pub(super) gap: f64,
     /// Nearer than this they touch.
     pub(super) near: f64,
+    /// Rounding of the gap.
+    rounding: f64,
 }
 
 impl Touch {
@@ -47,6 +49,7 @@ impl Touch {
                     restitution: phases.contact?.restitution,
                     gap: distance - (one.radius + other.radius),
                     near: near(one.radius.min(other.radius), far),
+                    rounding: 2.0 * f64::EPSILON * (far + one.radius + other.radius),
                 })
             }
             EventKind::Cushion { body, wall } => {
@@ -64,6 +67,7 @@ impl Touch {
                     restitution: cushions.restitution,
                     gap: half - particle.radius - particle.position[axis] * side,
                     near: near(particle.radius, half.max(particle.position.amax())),
+                    rounding: 2.0 * f64::EPSILON * (half.max(particle.position.amax())),
                 })
             }
             EventKind::Rest { .. } => None,
@@ -101,6 +105,30 @@ impl Touch {
     pub(super) fn slowest_bounce(&self, particles: &[Particle]) -> f64 {
         let [_, acceleration] = self.sizes(particles);
         (2.0 * acceleration * self.near).sqrt()
+    }
+
+    /// The touch at the end of a step, with its normal along the mean separation over the step:
+    /// times the relative motion that is exactly the change of the gap.
+    ///
+    /// Equation: with q the separation, `(q0 + q1)/(|q0| + |q1|) . (q1 - q0) = |q1| - |q0|`.
+    pub(super) fn mean(&self, phases: &Phases, start: &[Particle], end: &[Particle]) -> Self {
+        let Some(mut touch) = Self::of(self.kind, phases, end) else {
+            return *self;
+        };
+        if let Some(b) = self.b {
+            let apart = |at: &[Particle]| at[self.a].position - at[b].position;
+            let (before, after) = (apart(start), apart(end));
+            let lengths = before.norm() + after.norm();
+            if lengths > 0.0 {
+                touch.normal = (before + after) / lengths;
+            }
+        }
+        touch
+    }
+
+    /// Rounding of a gap, from the coordinates that enter.
+    pub(super) fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     pub(super) fn touches(&self) -> bool {
