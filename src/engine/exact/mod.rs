@@ -8,7 +8,7 @@ mod effort;
 pub mod flight;
 pub mod forces;
 mod order;
-
+mod parting;
 mod settling;
 mod wide;
 

@@ -1,4 +1,5 @@
-//! Forces, kick, drift and rest.
+//! Forces, kick, drift and rest. What a body does by itself is a function of that body; what
+//! joins bodies, one of all of them.
 
 use super::Particle;
 use super::observer::Observer;
@@ -8,10 +9,8 @@ use crate::scene::{Attraction, Drag, Rest};
 
 /// Slides' `resetForce()`.
 #[inline]
-pub(super) fn clear(particles: &mut [Particle]) {
-    for particle in particles {
-        particle.force = Vector3::zeros();
-    }
+pub(super) fn clear(particle: &mut Particle) {
+    particle.force = Vector3::zeros();
 }
 
 /// Slides' loop over `computeAttraction(i, j)`, i < j.
@@ -37,10 +36,8 @@ pub(super) fn attract(particles: &mut [Particle], effect: Attraction) {
 
 /// Slides' `floorDrag()`.
 #[inline]
-pub(super) fn drag(particles: &mut [Particle], effect: Drag) {
-    for particle in particles {
-        particle.force += particle.velocity * -effect.coefficient;
-    }
+pub(super) fn drag(particle: &mut Particle, effect: Drag) {
+    particle.force += particle.velocity * -effect.coefficient;
 }
 
 /// Slides' final model of the spring-damper, spring by spring.
@@ -56,26 +53,20 @@ pub(super) fn springs(particles: &mut [Particle], springs: &[SpringDamper]) {
 
 /// Uniform gravity, which the slides' particle has a field for and never uses.
 #[inline]
-pub(super) fn gravity(particles: &mut [Particle], acceleration: &Vector3) {
-    for particle in particles {
-        particle.force += acceleration * particle.mass;
-    }
+pub(super) fn gravity(particle: &mut Particle, acceleration: &Vector3) {
+    particle.force += acceleration * particle.mass;
 }
 
 /// First line of slides' `forceIntegration()`: `vel = vel + dt*((1.0/mass) * force)`.
 #[inline]
-pub(super) fn kick(particles: &mut [Particle], dt: f64) {
-    for particle in particles {
-        particle.velocity += particle.force * (1.0 / particle.mass) * dt;
-    }
+pub(super) fn kick(particle: &mut Particle, dt: f64) {
+    particle.velocity += particle.force * (1.0 / particle.mass) * dt;
 }
 
 /// Second line of slides' `forceIntegration()`: `loc = loc + dt*vel`.
 #[inline]
-pub(super) fn drift(particles: &mut [Particle], dt: f64) {
-    for particle in particles {
-        particle.position += particle.velocity * dt;
-    }
+pub(super) fn drift(particle: &mut Particle, dt: f64) {
+    particle.position += particle.velocity * dt;
 }
 
 /// Last line of slides' `simulate()`: slower than the rest speed is standing.

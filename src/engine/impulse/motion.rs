@@ -37,16 +37,40 @@ pub struct Euler<const DECAY: bool> {
 impl<const DECAY: bool> Motion for Euler<DECAY> {
     #[inline]
     fn advance(&mut self, phases: &Phases, particles: &mut [Particle], dt: f64) -> u64 {
+        if !DECAY && phases.act_alone() {
+            for particle in particles {
+                phases.sum_forces_alone(particle);
+                forces::kick(particle, dt);
+                forces::drift(particle, dt);
+            }
+            return 1;
+        }
         if phases.forces {
             phases.sum_forces(particles);
-            forces::kick(particles, dt);
+            kick(particles, dt);
         }
         if DECAY {
             self.decay.drift(phases, particles, dt);
         } else {
-            forces::drift(particles, dt);
+            drift(particles, dt);
         }
         u64::from(phases.forces)
+    }
+}
+
+/// The kick of every body.
+#[inline]
+fn kick(particles: &mut [Particle], dt: f64) {
+    for particle in particles {
+        forces::kick(particle, dt);
+    }
+}
+
+/// The drift of every body.
+#[inline]
+fn drift(particles: &mut [Particle], dt: f64) {
+    for particle in particles {
+        forces::drift(particle, dt);
     }
 }
 
@@ -71,18 +95,18 @@ impl Verlet {
                 phases.sum_forces(particles);
                 self.is_fresh = true;
             }
-            forces::kick(particles, dt);
+            kick(particles, dt);
             return u64::from(stale);
         }
         self.before.clear();
         self.before.extend(particles.iter().map(|p| p.velocity));
         phases.sum_forces(particles);
-        forces::kick(particles, 0.5 * dt);
+        kick(particles, 0.5 * dt);
         phases.sum_forces(particles);
         for (particle, before) in particles.iter_mut().zip(&self.before) {
             particle.velocity = *before;
         }
-        forces::kick(particles, dt);
+        kick(particles, dt);
         2
     }
 }
@@ -122,7 +146,7 @@ impl Decay {
     #[inline]
     fn drift(&mut self, phases: &Phases, particles: &mut [Particle], dt: f64) {
         let Some(drag) = phases.decay else {
-            return forces::drift(particles, dt);
+            return drift(particles, dt);
         };
         if dt.to_bits() != self.dt.to_bits() || self.factors.len() != particles.len() {
             self.dt = dt;

@@ -66,16 +66,40 @@ impl Phases {
     /// Sums the forces on every particle.
     #[inline]
     pub(super) fn sum_forces(&self, particles: &mut [Particle]) {
-        forces::clear(particles);
+        particles.iter_mut().for_each(forces::clear);
         if let Some(attraction) = self.attraction {
             forces::attract(particles, attraction);
         }
         if let Some(drag) = self.drag {
-            forces::drag(particles, drag);
+            for particle in &mut *particles {
+                forces::drag(particle, drag);
+            }
         }
         forces::springs(particles, &self.springs);
         if let Some(acceleration) = &self.gravity {
-            forces::gravity(particles, acceleration);
+            for particle in particles {
+                forces::gravity(particle, acceleration);
+            }
+        }
+    }
+
+    /// Whether forces act and none joins bodies: each depends on its own body alone.
+    #[inline]
+    pub(super) fn act_alone(&self) -> bool {
+        self.forces && self.attraction.is_none() && self.springs.is_empty()
+    }
+
+    /// Sums the forces on one particle where every force acts on its body alone: the bits of
+    /// [`sum_forces`](Self::sum_forces), for an integrator that takes body after body through
+    /// its phases, in one pass over memory.
+    #[inline]
+    pub(super) fn sum_forces_alone(&self, particle: &mut Particle) {
+        forces::clear(particle);
+        if let Some(drag) = self.drag {
+            forces::drag(particle, drag);
+        }
+        if let Some(acceleration) = &self.gravity {
+            forces::gravity(particle, acceleration);
         }
     }
 

@@ -6,8 +6,10 @@ use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
+use crate::engine::exact::parting::{Parting, SAFETY};
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
+use crate::physics::Vector3;
 use crate::physics::real::Real;
 use crate::recording::{Digits, Recording, Undetermined, initial_states};
 use crate::scene::Scene;
@@ -17,9 +19,6 @@ const NUDGE: f64 = 8.077_935_669_463_161e-28; // 2^-90
 
 /// An event may add this many roundings to a run's error.
 const ROUNDINGS_AN_EVENT: f64 = 64.0;
-
-/// Room between what two moved runs show and what is claimed.
-const SAFETY: f64 = 10.0;
 
 /// Answers that differ by less than this share of the scene's size are the same.
 const SAME: f64 = 1e-9;
@@ -43,7 +42,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     let mut double = FlightSimulation::<f64>::new(scene, TieOrder::Rule)?.limited(operations);
     let mut recording = Recording::at_start("exact", scene);
     let mut states = initial_states(scene);
-    let mut growth = vec![Parting::default()];
+    let mut growth = vec![Growth::default()];
     for sample in 1..=scene.sample_count() {
         let halt = run.advance_to(sample, Some(&mut recording.events));
         run.state_into(&mut states);
@@ -57,19 +56,19 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             if other.advance_to(sample, None).is_some() {
                 parting = Parting::unknown();
             }
-            parting = parting.with(&run, other.states());
+            parting = parting.with(differences(&run, other.states()));
         }
         let events = ROUNDINGS_AN_EVENT * Wide::EPSILON * float(run.event_count());
-        let mut parting = parting.scaled(SAFETY * (events / NUDGE).max(1.0));
-        let ended = double.advance_to(sample, None).is_some();
-        parting.in_doubles = if ended {
-            f64::INFINITY
+        let doubles = if double.advance_to(sample, None).is_some() {
+            Parting::unknown()
         } else {
-            Parting::default()
-                .with(&run, double.states().map(|state| widened(&state)))
-                .position
+            let states = double.states().map(|state| widened(&state));
+            Parting::default().with(differences(&run, states))
         };
-        growth.push(parting);
+        growth.push(Growth {
+            errors: parting.scaled(SAFETY * (events / NUDGE).max(1.0)),
+            doubles,
+        });
     }
     recording.work = run.work();
     let scale = Scale::of(&recording);
@@ -85,61 +84,41 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     })
 }
 
-/// How far other runs are from the run, over all bodies.
+/// What errors have grown to at a sample.
 #[derive(Debug, Clone, Copy, Default)]
-struct Parting {
-    position: f64,
-    velocity: f64,
-    in_doubles: f64,
+struct Growth {
+    /// Those that the run may have.
+    errors: Parting,
+    /// Those of the run in doubles.
+    doubles: Parting,
 }
 
-impl Parting {
-    fn unknown() -> Self {
-        Self {
-            position: f64::INFINITY,
-            velocity: f64::INFINITY,
-            in_doubles: f64::INFINITY,
-        }
-    }
-
-    fn with(
-        mut self,
-        run: &FlightSimulation<Wide>,
-        other: impl Iterator<Item = State<Wide>>,
-    ) -> Self {
-        for (a, b) in run.states().zip(other) {
-            let position = (a.position - b.position).map(Real::to_f64).norm();
-            let velocity = (a.velocity - b.velocity).map(Real::to_f64).norm();
-            self.position = self.position.max(position);
-            self.velocity = self.velocity.max(velocity);
-        }
-        self
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            position: self.position * factor,
-            velocity: self.velocity * factor,
-            in_doubles: self.in_doubles,
-        }
-    }
+/// How far a run is from another, body by body: positions and velocities.
+fn differences(
+    run: &FlightSimulation<Wide>,
+    other: impl Iterator<Item = State<Wide>>,
+) -> impl Iterator<Item = [Vector3; 2]> {
+    run.states().zip(other).map(|(a, b)| {
+        let differences = [a.position - b.position, a.velocity - b.velocity];
+        differences.map(|difference| difference.map(Real::to_f64))
+    })
 }
 
 /// Digits from errors; once a digit of a position is lost it does not come back.
 ///
 /// A velocity may differ at one sample alone, when an impact falls on it: the sample claims
 /// nothing then, but its neighbours do.
-fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
+fn digits(growth: &[Growth], scale: &Scale) -> Vec<Digits> {
     let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
     let mut digits = Vec::with_capacity(growth.len());
-    for (sample, parting) in growth.iter().enumerate() {
-        position = position.max(parting.position);
+    for (sample, Growth { errors, .. }) in growth.iter().enumerate() {
+        position = position.max(errors.position);
         let around = &growth[sample.saturating_sub(1)..growth.len().min(sample + 2)];
         let lasting = around
             .iter()
-            .fold(f64::INFINITY, |least, near| least.min(near.velocity));
+            .fold(f64::INFINITY, |least, near| least.min(near.errors.velocity));
         velocity = velocity.max(lasting);
-        let of_velocity = velocity.max(parting.velocity);
+        let of_velocity = velocity.max(errors.velocity);
         digits.push(scale.digits(position, of_velocity));
     }
     digits
@@ -149,7 +128,7 @@ fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
 fn undetermined(
     scene: &Scene,
     recording: &Recording,
-    growth: &[Parting],
+    growth: &[Growth],
     scale: &Scale,
     run: &FlightSimulation<Wide>,
     operations: u64,
@@ -164,18 +143,17 @@ fn undetermined(
     ] {
         let mut other = FlightSimulation::<Wide>::new(scene, order)?.limited(operations);
         let mut states = initial_states(scene);
-        for (sample, parting) in growth.iter().enumerate().skip(1) {
+        for (sample, Growth { doubles, .. }) in growth.iter().enumerate().skip(1) {
             if other.advance_to(sample, None).is_some() {
                 break;
             }
             other.state_into(&mut states);
-            let pairs = states.iter().zip(recording.sample(sample));
-            let apart = pairs
-                .map(|(a, b)| (a.position - b.position).norm())
-                .fold(0.0, f64::max);
+            let apart = Parting::default()
+                .with_states(&states, recording.sample(sample))
+                .position;
             // Other orders also move events by the width of an instant, some hundred roundings
             // of a double, which grow as those of the run in doubles do.
-            let same = (SAME * scale.diagonal).max(1e4 * parting.in_doubles);
+            let same = (SAME * scale.diagonal).max(1e4 * doubles.position);
             if apart > same {
                 first = first.min(sample);
                 spread = spread.max(apart);

@@ -7,6 +7,7 @@ use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
+use crate::engine::exact::parting::{Parting, SAFETY};
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
 use crate::recording::{
@@ -23,10 +24,6 @@ const WIDE_OPERATIONS: u64 = 1_000_000_000;
 
 /// Operations in doubles after which an undetermined cluster is no longer certified.
 const SETTLING_OPERATIONS: f64 = 1e9;
-
-/// The true error may be larger than the difference of two computations that err; by how much
-/// a claim allows for.
-const SAFETY: f64 = 10.0;
 
 /// Computes a scene with forces and certifies its digits.
 ///
@@ -77,14 +74,14 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         parting = match &witness {
             Some(witness) if halted.flatten().is_none() => {
                 witness.state_into(&mut others);
-                parting.with(&states, &others)
+                parting.with_states(&states, &others)
             }
             Some(_) | None => Parting::unknown(),
         };
         partings.push(parting);
         if witness.is_some()
             && published.is_unsettled()
-            && (parting.is_lost(&recording) || published.is_costly())
+            && (is_lost(parting, &recording) || published.is_costly())
         {
             published.narrow(scene, sample, &states);
             published.double.settle_sooner();
@@ -102,8 +99,10 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         None => None,
     };
     let scale = Scale::of(&recording);
-    let digits =
-        |parting: &Parting| scale.digits(SAFETY * parting.position, SAFETY * parting.velocity);
+    let digits = |parting: &Parting| {
+        let errors = parting.scaled(SAFETY);
+        scale.digits(errors.position, errors.velocity)
+    };
     Ok(Certified {
         digits: partings.iter().map(digits).collect(),
         recording,
@@ -121,17 +120,15 @@ fn spread(scene: &Scene, recording: &Recording, from: f64, operations: u64) -> R
         .with_order(TieOrder::Backwards)
         .limited(operations);
     other.set_state(start, &states);
-    let mut spread = 0.0_f64;
+    let mut parting = Parting::default();
     for sample in start + 1..samples {
         if other.advance_to(sample, None).is_some() {
             break;
         }
         other.state_into(&mut states);
-        for (own, other) in recording.sample(sample).iter().zip(&states) {
-            spread = spread.max((own.position - other.position).norm());
-        }
+        parting = parting.with_states(recording.sample(sample), &states);
     }
-    Ok(spread)
+    Ok(parting.position)
 }
 
 /// States moved by half an ulp, so that two computations do not share their rounding.
@@ -233,42 +230,8 @@ impl Voice {
     }
 }
 
-/// How far two computations have parted so far, over all bodies.
-#[derive(Debug, Clone, Copy, Default)]
-struct Parting {
-    position: f64,
-    velocity: f64,
-}
-
-impl Parting {
-    /// Nothing is known any more.
-    fn unknown() -> Self {
-        Self {
-            position: f64::INFINITY,
-            velocity: f64::INFINITY,
-        }
-    }
-
-    /// Whether too few digits are left to compare positions.
-    fn is_lost(self, recording: &Recording) -> bool {
-        let digits = Scale::of(recording).digits(SAFETY * self.position, 0.0);
-        digits.position < COMPARABLE_DIGITS
-    }
-
-    /// With the next sample of both.
-    fn with(mut self, states: &[BodyState], others: &[BodyState]) -> Self {
-        for (state, other) in states.iter().zip(others) {
-            self.position = larger(self.position, (state.position - other.position).norm());
-            self.velocity = larger(self.velocity, (state.velocity - other.velocity).norm());
-        }
-        self
-    }
-}
-
-/// The larger; infinite where one is not a number.
-fn larger(one: f64, other: f64) -> f64 {
-    if other.is_nan() {
-        return f64::INFINITY;
-    }
-    one.max(other)
+/// Whether too few digits are left to compare positions.
+fn is_lost(parting: Parting, recording: &Recording) -> bool {
+    let digits = Scale::of(recording).digits(SAFETY * parting.position, 0.0);
+    digits.position < COMPARABLE_DIGITS
 }
