@@ -13,8 +13,8 @@ pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
 pub use record::{drive, record};
 pub use spec::{
-    DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Impacts, ImpulseSettings, Integrator,
-    Precision, RapierSettings, engine, engines,
+    CcdBody, DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Impacts, ImpulseSettings,
+    Integrator, LengthScale, Precision, RapierSettings, engine, engines,
 };
 pub use steps::{DEFAULT_DT, StepGrid};
 

@@ -94,6 +94,24 @@ impl Scene {
         self.bodies.iter().position(|body| body.name == name)
     }
 
+    /// Index of the body that is fastest at time 0, the first of equals. Valid for a scene with
+    /// bodies.
+    #[must_use]
+    pub fn fastest_body(&self) -> usize {
+        let speed = |body: usize| {
+            let [x, y, z] = self.bodies[body].velocity;
+            x.hypot(y).hypot(z)
+        };
+        let faster = |best, body| {
+            if speed(body) > speed(best) {
+                body
+            } else {
+                best
+            }
+        };
+        (1..self.bodies.len()).fold(0, faster)
+    }
+
     /// The title, or the name where there is none.
     #[must_use]
     pub fn heading(&self) -> &str {

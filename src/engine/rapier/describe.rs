@@ -1,9 +1,9 @@
 //! What a Rapier engine does on a scene, in words: phases of a step, and notes on differences.
 
-use super::layout::{Combine, Layout};
+use super::layout::{Combine, Layout, length_unit};
 use super::parameters;
 use super::world::Parameters;
-use crate::engine::{Forces, Phase, Precision, RapierSettings};
+use crate::engine::{CcdBody, Forces, Phase, Precision, RapierSettings};
 use crate::physics::length;
 use crate::scene::{Body, Scene};
 
@@ -54,12 +54,14 @@ pub(super) fn phases(scene: &Scene, layout: &Layout, p: &Parameters) -> Vec<Phas
             "linear damping, v / (1 + dt k/m) after the substeps",
         ));
     }
-    if p.ccd_passes > 0 && !layout.walls.is_empty() {
-        phases.push(Phase::new(
-            "sweep",
-            "fast balls stop at walls (continuous collision detection)",
-        ));
-    }
+    phases.extend(sweep_phase(scene, layout, p));
+    phases.extend(p.sleep.map(|sleep| {
+        let (speed, after) = (shown(sleep.speed), shown(sleep.after));
+        Phase::new(
+            "sleep",
+            format!("slower than {speed} for {after} s: asleep"),
+        )
+    }));
     if scene.effects.rest.is_some() {
         phases.push(Phase::new(
             "rest",
@@ -67,6 +69,19 @@ pub(super) fn phases(scene: &Scene, layout: &Layout, p: &Parameters) -> Vec<Phas
         ));
     }
     phases
+}
+
+/// Continuous collision detection, where something is swept.
+fn sweep_phase(scene: &Scene, layout: &Layout, p: &Parameters) -> Option<Phase> {
+    let walls = (!layout.walls.is_empty()).then(|| "fast balls stop at walls".to_owned());
+    let balls = layout
+        .ccd_body
+        .map(|body| format!("`{}`, when fast, stops at balls", scene.bodies[body].name));
+    let swept: Vec<_> = walls.into_iter().chain(balls).collect();
+    (p.ccd_passes > 0 && !swept.is_empty()).then(|| {
+        let method = format!("{} (continuous collision detection)", swept.join(", "));
+        Phase::new("sweep", method)
+    })
 }
 
 /// A parameter as it was meant, whether it was rounded to 32 or to 64 bits.
@@ -161,7 +176,16 @@ pub fn notes(scene: &Scene, settings: &RapierSettings) -> Vec<String> {
     if effects.contact.is_some() || effects.cushions.is_some() {
         contact_notes(scene, settings, &mut note);
     }
+    if settings.sleeping {
+        note("a slow body falls asleep: it stands still until something touches or pushes it");
+    }
     notes
+}
+
+/// The parameters of a scene's world, for steps of 1 s: none of what is told of them depends on
+/// the step.
+fn on_scene(scene: &Scene, settings: &RapierSettings) -> Parameters {
+    parameters(settings, length_unit(scene, settings.length_scale), 1.0)
 }
 
 fn native_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut(&str)) {
@@ -178,8 +202,7 @@ fn native_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut(
     if settings.solver_iterations != Some(1) {
         note("a step is divided into substeps over which forces stay constant");
     }
-    let cap = parameters(settings, scene.units.length.per_metre(), 1.0).speed_cap;
-    if let Some(cap) = cap {
+    if let Some(cap) = on_scene(scene, settings).speed_cap {
         let unit = scene.units.length.symbol();
         note(&format!(
             "speeds are cut at {} {unit}/s, by Rapier's default",
@@ -191,7 +214,7 @@ fn native_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut(
 /// What Rapier does to this scene from the start that has nothing to do with its physics.
 #[must_use]
 pub fn warnings(scene: &Scene, settings: &RapierSettings) -> Vec<String> {
-    let cap = parameters(settings, scene.units.length.per_metre(), 1.0).speed_cap;
+    let cap = on_scene(scene, settings).speed_cap;
     let fast = |body: &&Body| cap.is_some_and(|cap| length(&body.velocity.into()) > cap);
     let fast = scene.bodies.iter().filter(fast).map(|body| {
         let cap = cap.map_or_else(String::new, shown);
@@ -231,7 +254,17 @@ fn contact_notes(scene: &Scene, settings: &RapierSettings, note: &mut impl FnMut
     if settings.contact_recycling != Some(false) {
         note("a pair that moved little keeps its old contact normal");
     }
-    if settings.max_ccd_substeps != Some(0) && scene.effects.cushions.is_some() {
+    if settings.max_ccd_substeps == Some(0) {
+        return;
+    }
+    if scene.effects.cushions.is_some() {
         note("a ball faster than half a radius a step stops at a wall (motion clamped)");
+    }
+    match settings.ccd_body {
+        CcdBody::Fastest if scene.effects.contact.is_some() => note(&format!(
+            "`{}`, faster than half a radius a step, stops at a ball as well",
+            scene.bodies[scene.fastest_body()].name
+        )),
+        CcdBody::Fastest | CcdBody::None => {}
     }
 }

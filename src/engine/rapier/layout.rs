@@ -1,7 +1,7 @@
 //! What a scene calls for in a Rapier world, in plain numbers: only what it declares.
 
 use super::range::Range;
-use crate::engine::{Forces, RapierSettings};
+use crate::engine::{CcdBody, Forces, LengthScale, RapierSettings};
 use crate::error::Result;
 use crate::physics::SpringDamper;
 use crate::recording::Wall;
@@ -39,9 +39,11 @@ pub(super) struct Layout {
     pub settings: RapierSettings,
     /// The step, s.
     pub step: f64,
-    /// Scene length units a metre.
+    /// The length of normalised parameters, scene length unit.
     pub length_unit: f64,
     pub bodies: Vec<BodyPlan>,
+    /// The body that is swept against the others; none where nothing collides with it.
+    pub ccd_body: Option<usize>,
     /// Whether balls collide with each other.
     pub balls_collide: bool,
     pub ball_restitution: f64,
@@ -81,8 +83,12 @@ impl Layout {
         let layout = Self {
             settings: settings.clone(),
             step,
-            length_unit: scene.units.length.per_metre(),
+            length_unit: length_unit(scene, settings.length_scale),
             bodies: bodies.collect(),
+            ccd_body: match settings.ccd_body {
+                CcdBody::None => None,
+                CcdBody::Fastest => effects.contact.map(|_| scene.fastest_body()),
+            },
             balls_collide: effects.contact.is_some(),
             ball_restitution,
             walls: effects.cushions.iter().flat_map(walls).collect(),
@@ -106,6 +112,7 @@ impl Layout {
     fn check(&self, scene: &Scene) -> Result<()> {
         let range = Range::of(self.settings.precision);
         range.positive("step", self.step)?;
+        range.positive("length_unit", self.length_unit)?;
         for (index, plan) in self.bodies.iter().enumerate() {
             let field =
                 |name: &str| format!("bodies[{index}].{name} (`{}`)", scene.bodies[index].name);
@@ -150,6 +157,15 @@ impl Layout {
     /// Whether the world does anything that divides by a sum of inverse masses.
     fn needs_inverse_mass(&self) -> bool {
         self.has_colliders() || self.gravity.is_some() || !self.springs.is_empty()
+    }
+}
+
+/// Rapier's `length_unit` on a scene, scene length unit.
+pub(super) fn length_unit(scene: &Scene, scale: LengthScale) -> f64 {
+    let radii = scene.bodies.iter().map(|body| body.radius);
+    match scale {
+        LengthScale::Metre => scene.units.length.per_metre(),
+        LengthScale::SmallestRadius(times) => times * radii.fold(f64::INFINITY, f64::min),
     }
 }
 

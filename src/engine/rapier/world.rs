@@ -32,10 +32,10 @@ pub(super) trait World: Send {
     /// Velocity of a body.
     fn velocity(&self, body: usize) -> Vector3;
 
-    /// Sets the velocity of a body to zero.
+    /// Sets the velocity of a body to zero; awakens it, where bodies may sleep.
     fn stop(&mut self, body: usize);
 
-    /// Replaces the force on a body.
+    /// Replaces the force on a body; one that is not zero awakens it, where bodies may sleep.
     fn set_force(&mut self, body: usize, force: &Vector3);
 
     /// Tells, for every touching pair of parties, the impulse of the whole last step.
@@ -57,4 +57,15 @@ pub(super) struct Parameters {
     pub speed_cap: Option<f64>,
     /// Fastest push-out of an overlap, scene length unit per second.
     pub push_out_speed: f64,
+    /// When a body falls asleep; none: never.
+    pub sleep: Option<Sleep>,
+}
+
+/// When Rapier puts a body to sleep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sleep {
+    /// Slower than this, scene length unit per second …
+    pub speed: f64,
+    /// … for so long, s.
+    pub after: f64,
 }

@@ -2,7 +2,7 @@
 
 use super::layout::{Combine, Layout};
 use super::range::Range;
-use super::world::{Parameters, World};
+use super::world::{Parameters, Sleep, World};
 use crate::engine::RapierSettings;
 use crate::physics::{BodyState, Vector3};
 
@@ -20,7 +20,8 @@ macro_rules! rapier_world {
         )]
         mod $module {
             use super::{
-                BodyState, Combine, Layout, Parameters, Range, RapierSettings, Vector3, World,
+                BodyState, Combine, Layout, Parameters, Range, RapierSettings, Sleep, Vector3,
+                World,
             };
             use $rapier::prelude::*;
 
@@ -28,6 +29,8 @@ macro_rules! rapier_world {
             pub struct $World {
                 world: PhysicsWorld,
                 bodies: Vec<RigidBodyHandle>,
+                /// Whether bodies may sleep, and so must be awakened.
+                sleeping: bool,
             }
 
             fn vector(v: &Vector3) -> Vector {
@@ -66,6 +69,16 @@ macro_rules! rapier_world {
                 p
             }
 
+            fn sleep(length_unit: f64) -> Sleep {
+                let defaults = RigidBodyActivation::default();
+                // Rapier 0.36 compares half of a body's motion in a step with the threshold
+                // (`RigidBodyActivation::update_energy`).
+                Sleep {
+                    speed: 2.0 * f64::from(defaults.normalized_linear_threshold) * length_unit,
+                    after: f64::from(defaults.time_until_sleep),
+                }
+            }
+
             fn collider(layout: &Layout, shape: ColliderBuilder) -> ColliderBuilder {
                 // Balls in group 1, walls in group 2; without a contact effect balls meet
                 // walls alone. No mass: the body has the scene's own.
@@ -100,7 +113,8 @@ macro_rules! rapier_world {
                             Vector::ZERO,
                         ))
                         .lock_rotations()
-                        .can_sleep(false)
+                        .can_sleep(layout.settings.sleeping)
+                        .ccd_enabled(layout.ccd_body == Some(index))
                         .user_data(index as u128);
                     let handle = self.world.insert_body(body);
                     self.bodies.push(handle);
@@ -198,6 +212,7 @@ macro_rules! rapier_world {
                     let mut this = Self {
                         world,
                         bodies: Vec::with_capacity(states.len()),
+                        sleeping: layout.settings.sleeping,
                     };
                     for (index, state) in states.iter().enumerate() {
                         this.insert_ball(layout, index, state);
@@ -223,6 +238,7 @@ macro_rules! rapier_world {
                         ccd_passes: p.max_ccd_substeps,
                         speed_cap: (cap < $real::MAX).then_some(f64::from(cap)),
                         push_out_speed: f64::from(p.max_corrective_velocity()),
+                        sleep: settings.sleeping.then(|| sleep(length_unit)),
                     }
                 }
 
@@ -270,14 +286,14 @@ macro_rules! rapier_world {
                 }
 
                 fn stop(&mut self, body: usize) {
-                    self.world.bodies[self.bodies[body]].set_linvel(Vector::ZERO, false);
+                    self.world.bodies[self.bodies[body]].set_linvel(Vector::ZERO, self.sleeping);
                 }
 
                 #[inline]
                 fn set_force(&mut self, body: usize, force: &Vector3) {
                     let body = &mut self.world.bodies[self.bodies[body]];
                     body.reset_forces(false);
-                    body.add_force(vector(force), false);
+                    body.add_force(vector(force), self.sleeping);
                 }
 
                 fn each_impulse(&self, mut visit: impl FnMut(usize, usize, f64)) {

@@ -2,7 +2,6 @@
 
 use super::reference::Reference;
 use crate::engine::{engine, record};
-use crate::physics::Vector3;
 use crate::scene::{LengthUnit, Scene};
 
 /// A ball is placed off by this many metres: nobody places one better by hand.
@@ -46,16 +45,7 @@ pub fn sensitivity(scene: &Scene, reference: &mut Reference) -> Option<Sensitivi
             MISPLACED_M * units.per_metre()
         }
     };
-    let speed = |body: usize| Vector3::from(scene.bodies[body].velocity).norm();
-    let later = 1..scene.bodies.len();
-    let faster = |best, body| {
-        if speed(body) > speed(best) {
-            body
-        } else {
-            best
-        }
-    };
-    let body = later.fold(0, faster);
+    let body = scene.fastest_body();
     let mut twin = scene.clone();
     let [vx, _, vz] = twin.bodies[body].velocity.map(f64::abs);
     let across = if vx <= vz { 0 } else { 2 };
