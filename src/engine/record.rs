@@ -39,5 +39,6 @@ pub fn drive(scene: &Scene, voice: &str, simulation: &mut dyn Simulation) -> Rec
         }
     }
     recording.work = simulation.work();
+    recording.concessions = simulation.concessions();
     recording
 }

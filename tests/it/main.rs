@@ -15,6 +15,7 @@ mod geometry;
 mod hostile;
 mod invariants;
 mod layers;
+mod ledger;
 mod oracle;
 mod orders;
 mod own_truth;

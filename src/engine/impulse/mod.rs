@@ -8,6 +8,7 @@
 //! `runge_kutta` and `dormand_prince` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
 //! which of them a name means.
 
+mod books;
 mod contacts;
 mod cushions;
 mod dormand_prince;

@@ -5,6 +5,7 @@ use super::handling::{Handling, Overlap, Taken};
 use super::motion::{Euler, Motion};
 use super::observer::Observer;
 use super::phases::Phases;
+use crate::recording::Concession;
 use crate::scene::Scene;
 
 /// A way to make a step of a scene's phases.
@@ -23,6 +24,11 @@ pub(super) trait Scheme {
 
     /// States were changed from outside.
     fn forget(&mut self);
+
+    /// What was given up so far to go on.
+    fn concessions(&self) -> Vec<Concession> {
+        Vec::new()
+    }
 }
 
 /// An integrator `M`, and a way `H` to deal with what it meets.

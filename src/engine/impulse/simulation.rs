@@ -1,13 +1,13 @@
 //! The simulation: one scheme on one scene, step by step.
 
-use super::observer::{Nobody, Observer, Scribe};
+use super::observer::{Bookkeeper, Nobody, Observer, Scribe};
 use super::phases::Phases;
 use super::scheme::{Lecture, Scheme};
 use super::{Particle, particles};
 use crate::engine::spec::DragRule;
 use crate::engine::{Simulation, StepGrid};
 use crate::physics::BodyState;
-use crate::recording::{EventLog, Outcome, Work};
+use crate::recording::{Concession, EventLog, Ledger, Outcome, Work};
 use crate::scene::Scene;
 
 /// The hand-written impulse solver on one scene; without parameters, the lecture's.
@@ -23,6 +23,7 @@ pub struct ImpulseSimulation<S = Lecture> {
     grid: StepGrid,
     sample: usize,
     work: Work,
+    ledger: Option<Ledger>,
 }
 
 impl ImpulseSimulation {
@@ -44,6 +45,7 @@ impl<S: Scheme> ImpulseSimulation<S> {
             grid,
             sample: 0,
             work: Work::default(),
+            ledger: None,
         }
     }
 
@@ -51,6 +53,17 @@ impl<S: Scheme> ImpulseSimulation<S> {
     pub fn take_steps(&mut self, count: u64) {
         for _ in 0..count {
             self.step(&mut Nobody);
+        }
+    }
+
+    /// Takes steps up to a sample, each told the time at its end.
+    fn go_on(&mut self, sample: usize, mut step: impl FnMut(&mut Self, f64)) {
+        while self.sample < sample {
+            self.sample += 1;
+            for count in 1..=self.grid.steps_per_sample {
+                let time = self.grid.time(self.sample, count);
+                step(self, time);
+            }
         }
     }
 
@@ -68,23 +81,23 @@ impl<S: Scheme> ImpulseSimulation<S> {
 
 #[allow(private_bounds, reason = "the rungs are made here alone")]
 impl<S: Scheme> Simulation for ImpulseSimulation<S> {
-    fn advance_to(&mut self, sample: usize, log: Option<&mut EventLog>) -> Option<Outcome> {
+    fn advance_to(&mut self, sample: usize, mut log: Option<&mut EventLog>) -> Option<Outcome> {
+        if let Some(mut ledger) = self.ledger.take() {
+            self.go_on(sample, |this, time| {
+                let scribe = log.as_deref_mut().map(|log| Scribe { log, time });
+                let ledger = &mut ledger;
+                this.step(&mut Bookkeeper { ledger, scribe });
+            });
+            self.ledger = Some(ledger);
+            return None;
+        }
         let Some(log) = log else {
             let intervals = sample.saturating_sub(self.sample) as u64;
             self.take_steps(intervals * self.grid.steps_per_sample);
             self.sample = self.sample.max(sample);
             return None;
         };
-        while self.sample < sample {
-            self.sample += 1;
-            for step in 1..=self.grid.steps_per_sample {
-                let mut scribe = Scribe {
-                    log,
-                    time: self.grid.time(self.sample, step),
-                };
-                self.step(&mut scribe);
-            }
-        }
+        self.go_on(sample, |this, time| this.step(&mut Scribe { log, time }));
         None
     }
 
@@ -108,5 +121,18 @@ impl<S: Scheme> Simulation for ImpulseSimulation<S> {
 
     fn work(&self) -> Work {
         self.work
+    }
+
+    fn keep_ledger(&mut self) -> bool {
+        self.ledger = Some(Ledger::default());
+        true
+    }
+
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref()
+    }
+
+    fn concessions(&self) -> Vec<Concession> {
+        self.scheme.concessions()
     }
 }

@@ -7,9 +7,9 @@ use super::motion::Motion;
 use super::observer::Observer;
 use super::path::{Path, Way};
 use super::phases::Phases;
-use super::{Particle, cushions};
+use super::{Particle, books, cushions};
 use crate::physics::{Vector3, length};
-use crate::recording::{EventKind, Wall};
+use crate::recording::{Account, EventKind, Wall};
 
 /// Impacts in one step, a body, after which what is left of it is dealt with by overlap: bounces
 /// that pile up, as on a floor, have no end.
@@ -37,13 +37,13 @@ struct Next {
 }
 
 impl Handling for Sweep {
-    fn step(
+    fn step<O: Observer>(
         &mut self,
         motion: &mut impl Motion,
         phases: &Phases,
         particles: &mut [Particle],
         dt: f64,
-        observer: &mut impl Observer,
+        observer: &mut O,
     ) -> Taken {
         let mut taken = Taken::default();
         let mut left = dt;
@@ -63,11 +63,13 @@ impl Handling for Sweep {
                 taken.pairs += pairs(particles.len() as u64);
             }
             let Some(next) = self.first(phases, length, INSTANT * dt) else {
+                books::motion(phases, &self.start, particles, length, observer);
                 left -= length;
                 continue;
             };
             if impacts == 0 {
-                phases.settle::<true>(particles, observer);
+                books::motion(phases, &self.start, particles, length, observer);
+                phases.settle::<true, O>(particles, observer);
                 motion.forget();
                 left -= length;
                 continue;
@@ -77,6 +79,7 @@ impl Handling for Sweep {
             motion.forget();
             if next.time > 0.0 {
                 taken.passes += motion.advance(phases, particles, next.time);
+                books::motion(phases, &self.start, particles, next.time, observer);
                 left -= next.time;
             }
             happen(next.kind, phases, particles, left, observer);
@@ -152,42 +155,58 @@ impl Sweep {
 }
 
 /// Lets an event happen to the particles, `left` before the end of the step.
-fn happen(
+fn happen<O: Observer>(
     kind: EventKind,
     phases: &Phases,
     particles: &mut [Particle],
     left: f64,
-    observer: &mut impl Observer,
+    observer: &mut O,
 ) {
-    let impulse = match kind {
+    match kind {
         EventKind::Contact { a, b } => {
+            let Some(contact) = phases.contact else {
+                return;
+            };
             let (head, tail) = particles.split_at_mut(b);
-            phases
-                .contact
-                .and_then(|contact| hit(&mut head[a], &mut tail[0], contact.restitution))
+            let (one, other) = (&mut head[a], &mut tail[0]);
+            if let Some(impulse) = hit(one, other, contact.restitution) {
+                observer.note_before_end(kind, impulse, left);
+                let masses = [one.mass, other.mass];
+                let entry = books::contact(contact.restitution, masses, impulse);
+                observer.book(Account::Contacts, entry);
+            }
         }
-        EventKind::Cushion { body, wall } => phases.cushions.and_then(|cushions| {
+        EventKind::Cushion { body, wall } => {
+            let Some(cushions) = phases.cushions else {
+                return;
+            };
             let (axis, side) = wall.axis_and_side();
-            cushions::mirror(&mut particles[body], axis, side, cushions.restitution)
-        }),
-        EventKind::Rest { body } => Some(stop(&mut particles[body])),
-    };
-    if let Some(impulse) = impulse {
-        observer.note_before_end(kind, impulse, left);
+            let (particle, e) = (&mut particles[body], cushions.restitution);
+            if let Some(impulse) = cushions::mirror(particle, axis, side, e) {
+                observer.note_before_end(kind, impulse, left);
+                let entry = books::cushion(e, particle.mass, impulse, &cushions::inward(wall));
+                observer.book(Account::Cushions, entry);
+            }
+        }
+        EventKind::Rest { body } => stop(&mut particles[body], body, left, observer),
     }
     let Some(rest) = phases.rest else { return };
     let (first, second) = kind.bodies();
     for body in std::iter::once(first).chain(second) {
         let speed = length(&particles[body].velocity);
         if speed > 0.0 && speed < rest.speed {
-            let impulse = stop(&mut particles[body]);
-            observer.note_before_end(EventKind::Rest { body }, impulse, left);
+            stop(&mut particles[body], body, left, observer);
         }
     }
 }
 
-fn stop(particle: &mut Particle) -> f64 {
+/// Stops a body, `left` before the end of the step.
+pub(super) fn stop(particle: &mut Particle, body: usize, left: f64, observer: &mut impl Observer) {
     let impulse = particle.mass * length(&particle.velocity);
+    observer.note_before_end(EventKind::Rest { body }, impulse, left);
+    observer.book(
+        Account::Rest,
+        books::rest(particle.mass, &particle.velocity),
+    );
     particle.velocity = Vector3::zeros();
-    impulse
 }

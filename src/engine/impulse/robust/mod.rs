@@ -15,16 +15,17 @@ mod stick;
 mod together;
 mod touch;
 
-use super::Particle;
 use super::handling::{Taken, pairs};
 use super::meeting::{Along, contact, cushion, slowed};
 use super::observer::Observer;
 use super::path::Way;
 use super::phases::Phases;
 use super::scheme::Scheme;
+use super::sweep::stop;
+use super::{Particle, books};
 use crate::physics::complementarity::pushes;
 use crate::physics::{SpringDamper, Vector3};
-use crate::recording::{EventKind, Wall};
+use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind, Wall};
 use crate::scene::Scene;
 use flow::{Flight, Flow};
 use limits::Limits;
@@ -59,6 +60,8 @@ pub struct Robust {
     touches: Vec<Touch>,
     /// Forces between surfaces in touch. Shape: `[body]`.
     pushes: Vec<Vector3>,
+    /// Those of walls, summed.
+    wall_push: Vector3,
     /// For so long nothing can meet, s.
     clear: f64,
     /// Whether overlaps could not be resolved.
@@ -66,17 +69,13 @@ pub struct Robust {
     conceded: Conceded,
 }
 
-/// What was given up.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Conceded {
-    /// Steps longer than an effect asks for.
-    pub long_steps: u64,
-    /// Steps whose forces found no end that they lead to: the velocities were turned back.
-    pub turned_back: u64,
-    /// Instants at which endless impacts were cut short.
-    pub cut_short: u64,
-    /// Whether spheres overlap that no room is left for.
-    pub jammed: bool,
+/// How often what was given up.
+#[derive(Debug, Clone, Copy, Default)]
+struct Conceded {
+    long_steps: u64,
+    turned_back: u64,
+    cut_short: u64,
+    jammed: u64,
 }
 
 /// What comes first in a step.
@@ -99,6 +98,7 @@ impl Scheme for Robust {
             travel: Vec::new(),
             touches: Vec::new(),
             pushes: vec![Vector3::zeros(); particles.len()],
+            wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
             conceded: Conceded::default(),
@@ -115,8 +115,7 @@ impl Scheme for Robust {
     ) -> Taken {
         if self.clear >= dt || self.becomes_clear(phases, particles, dt) {
             self.clear -= dt;
-            self.flow.coast(particles, dt);
-            return Taken::default();
+            return self.coast(phases, particles, dt, observer);
         }
         self.walk(phases, particles, dt, observer)
     }
@@ -124,6 +123,24 @@ impl Scheme for Robust {
     fn forget(&mut self) {
         self.clear = 0.0;
         self.jammed = false;
+    }
+
+    fn concessions(&self) -> Vec<Concession> {
+        let Conceded {
+            long_steps,
+            turned_back,
+            cut_short,
+            jammed,
+        } = self.conceded;
+        let counts = [
+            (ConcessionKind::LongStep, long_steps),
+            (ConcessionKind::TurnedBack, turned_back),
+            (ConcessionKind::CutShort, cut_short),
+            (ConcessionKind::Jammed, jammed),
+        ];
+        let made = counts.into_iter().filter(|(_, count)| *count > 0);
+        made.map(|(kind, count)| Concession { kind, count })
+            .collect()
     }
 }
 
@@ -199,46 +216,90 @@ impl Robust {
         self.clear >= dt
     }
 
-    /// A step from event to event.
-    fn walk(
+    /// A step in which nothing is met and no force acts.
+    #[inline]
+    fn coast<O: Observer>(
         &mut self,
         phases: &Phases,
         particles: &mut [Particle],
         dt: f64,
-        observer: &mut impl Observer,
+        observer: &mut O,
+    ) -> Taken {
+        let before = if O::BOOKS {
+            particles.to_vec()
+        } else {
+            Vec::new()
+        };
+        self.flow.coast(particles, dt);
+        books::motion(phases, &before, particles, dt, observer);
+        Taken::default()
+    }
+
+    /// A step from event to event.
+    fn walk<O: Observer>(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut O,
     ) -> Taken {
         let mut spent = Spent::default();
         let mut left = dt;
-        self.make_room(phases, particles);
+        self.make_room(phases, particles, observer);
         while left > 0.0 {
             let wanted = self.wanted(phases, particles, dt, &spent);
             let mut length = if wanted < left { wanted } else { left };
             touching(phases, particles, &mut self.touches);
-            self.end_low_bounces(particles, dt);
+            self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
             length = self.press_on(phases, particles, dt, length, &mut spent);
             spent.substeps += 1;
             let Some(next) = self.first(phases, particles, length, dt, &mut spent) else {
+                self.book_motion(phases, particles, length, observer);
                 left = if length >= left { 0.0 } else { left - length };
                 self.stop_slow(phases, particles, left, observer);
                 continue;
             };
-            left -= self.go_to(phases, particles, dt, next, &mut spent);
-            left = left.max(0.0);
+            let went = self.go_to(phases, particles, dt, next, &mut spent);
+            self.book_motion(phases, particles, went, observer);
+            left = (left - went).max(0.0);
             self.meet(phases, particles, dt, next, left, &mut spent, observer);
         }
         spent.taken
     }
 
+    /// Books a motion from the start of the step, pushes of walls included.
+    fn book_motion<O: Observer>(
+        &self,
+        phases: &Phases,
+        particles: &[Particle],
+        length: f64,
+        observer: &mut O,
+    ) {
+        if O::BOOKS && length > 0.0 {
+            books::motion(phases, &self.start, particles, length, observer);
+            let momentum = self.wall_push * length;
+            let pushed = |sign: f64| Entry {
+                energy: 0.0,
+                momentum: momentum * sign,
+            };
+            // The motion was measured with the pushes in it.
+            observer.book(Account::Integrator, pushed(-1.0));
+            observer.book(Account::Cushions, pushed(1.0));
+        }
+    }
+
     /// Ends bounces that would not rise above what counts as touching.
-    fn end_low_bounces(&self, particles: &mut [Particle], dt: f64) {
+    fn end_low_bounces(&self, particles: &mut [Particle], dt: f64, observer: &mut impl Observer) {
         let rate = |touch: &Touch| touch.rate(particles).abs();
         let is_low = |touch: &&Touch| rate(touch) <= touch.slowest_bounce(particles);
         let low = || self.touches.iter().filter(is_low);
         if low().any(|touch| rate(touch) > touch.still(particles, dt)) {
             let low: Vec<Touch> = low().copied().collect();
-            stick::bring_to_rest(particles, &low);
+            stick::bring_to_rest(particles, &low, |account, entry| {
+                observer.book(account, entry)
+            });
         }
     }
 
@@ -263,7 +324,12 @@ impl Robust {
     }
 
     /// Moves overlapping surfaces apart, unless there is no room for that.
-    fn make_room(&mut self, phases: &Phases, particles: &mut [Particle]) {
+    fn make_room<O: Observer>(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        observer: &mut O,
+    ) {
         if self.jammed || (phases.contact.is_none() && phases.cushions.is_none()) {
             return;
         }
@@ -273,8 +339,17 @@ impl Robust {
             .iter()
             .any(|touch| touch.gap < -4.0 * touch.near)
         {
+            let potential = |particles: &[Particle]| {
+                if O::BOOKS {
+                    books::potential_energy(phases, particles)
+                } else {
+                    0.0
+                }
+            };
+            let before = potential(particles);
             self.jammed = !overlap::separate(phases, particles);
-            self.conceded.jammed |= self.jammed;
+            books::push_out(observer, before, potential(particles));
+            self.conceded.jammed += u64::from(self.jammed);
         }
     }
 
@@ -289,7 +364,7 @@ impl Robust {
         spent: &mut Spent,
     ) -> f64 {
         let mut length = length;
-        self.pushes.fill(Vector3::zeros());
+        self.release();
         let resting = self.resting(particles, dt);
         loop {
             length = self.travel(phases, particles, length, spent);
@@ -309,9 +384,15 @@ impl Robust {
                 return length;
             }
             length = longest;
-            self.pushes.fill(Vector3::zeros());
+            self.release();
             particles.clone_from_slice(&self.start);
         }
+    }
+
+    /// Takes all pushes away.
+    fn release(&mut self) {
+        self.pushes.fill(Vector3::zeros());
+        self.wall_push = Vector3::zeros();
     }
 
     fn is_pressed(&self, touch: &Touch) -> bool {
@@ -371,8 +452,11 @@ impl Robust {
                 .map(|(i, g)| g - row(i))
                 .collect();
             sizes = pushes(&entry, &free, &vec![true; free.len()]);
-            self.pushes.fill(Vector3::zeros());
+            self.release();
             for (touch, size) in ends.iter().zip(&sizes) {
+                if touch.b.is_none() {
+                    self.wall_push += touch.normal * *size;
+                }
                 for (body, arm) in touch.arms() {
                     self.pushes[body] += arm * *size;
                 }
@@ -601,8 +685,7 @@ impl Robust {
             rest: phases.rest,
             dt,
         };
-        let settled =
-            instant.settle(&mut |kind, impulse| observer.note_before_end(kind, impulse, left));
+        let settled = instant.settle(&mut |note| note.tell(left, observer));
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 
@@ -622,12 +705,6 @@ impl Robust {
             }
         }
     }
-}
-
-fn stop(particle: &mut Particle, body: usize, left: f64, observer: &mut impl Observer) {
-    let impulse = particle.mass * particle.velocity.norm();
-    particle.velocity = Vector3::zeros();
-    observer.note_before_end(EventKind::Rest { body }, impulse, left);
 }
 
 /// `max` that does not pass over what is not a number.

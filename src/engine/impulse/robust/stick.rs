@@ -1,8 +1,9 @@
 //! Bounces too low to be seen, ended.
 
 use super::super::Particle;
-use super::together::coupling;
+use super::together::{account, coupling, work};
 use super::touch::Touch;
+use crate::recording::{Account, Entry};
 
 /// Brings to rest the rates of these touches, all together.
 ///
@@ -11,7 +12,11 @@ use super::touch::Touch;
 /// be singular, where touches depend on each other; the velocities are unique all the same, and
 /// no order of touches decides.
 /// Source: Hestenes and Stiefel 1952.
-pub(super) fn bring_to_rest(particles: &mut [Particle], touches: &[Touch]) {
+pub(super) fn bring_to_rest(
+    particles: &mut [Particle],
+    touches: &[Touch],
+    mut book: impl FnMut(Account, Entry),
+) {
     let count = touches.len();
     let inverse = |body: usize| 1.0 / particles[body].mass;
     let matrix: Vec<f64> = (0..count * count)
@@ -19,7 +24,8 @@ pub(super) fn bring_to_rest(particles: &mut [Particle], touches: &[Touch]) {
         .collect();
     let product =
         |vector: &[f64]| -> Vec<f64> { matrix.chunks(count).map(|row| dot(row, vector)).collect() };
-    let mut residual: Vec<f64> = touches.iter().map(|touch| -touch.rate(particles)).collect();
+    let rates: Vec<f64> = touches.iter().map(|touch| touch.rate(particles)).collect();
+    let mut residual: Vec<f64> = rates.iter().map(|rate| -rate).collect();
     let mut impulses = vec![0.0; count];
     let mut direction = residual.clone();
     let mut size = dot(&residual, &residual);
@@ -40,11 +46,14 @@ pub(super) fn bring_to_rest(particles: &mut [Particle], touches: &[Touch]) {
             *own = rest + turned * *own;
         }
     }
-    for (touch, impulse) in touches.iter().zip(impulses) {
+    for (touch, impulse) in touches.iter().zip(&impulses) {
         for (body, arm) in touch.arms() {
             let change = arm * (impulse / particles[body].mass);
             particles[body].velocity += change;
         }
+    }
+    for ((touch, impulse), rate) in touches.iter().zip(impulses).zip(rates) {
+        book(account(touch.kind), work(touch, impulse, rate, particles));
     }
 }
 
@@ -89,7 +98,7 @@ mod tests {
                 .sum::<f64>()
         };
         let before = (momentum(&all), energy(&all));
-        bring_to_rest(&mut all, &touches);
+        bring_to_rest(&mut all, &touches, |_, _| {});
         for touch in &touches {
             assert!(touch.rate(&all).abs() < 1e-21, "{}", touch.rate(&all));
         }

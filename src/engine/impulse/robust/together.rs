@@ -1,10 +1,11 @@
 //! Impacts at one instant, solved together: no order among them decides.
 
-use super::super::Particle;
+use super::super::observer::Observer;
+use super::super::{Particle, books};
 use super::touch::Touch;
 use crate::physics::Vector3;
 use crate::physics::complementarity::pushes;
-use crate::recording::EventKind;
+use crate::recording::{Account, Entry, EventKind};
 use crate::scene::Rest;
 
 /// Reflections after which what still approaches is brought to rest.
@@ -21,6 +22,46 @@ pub(super) struct Instant<'a> {
     pub(super) rest: Option<Rest>,
     /// The step of the scene, s.
     pub(super) dt: f64,
+}
+
+/// An impact or a stop that happened.
+pub(super) struct Note {
+    kind: EventKind,
+    impulse: f64,
+    entry: Entry,
+}
+
+impl Note {
+    /// Tells an observer, so much time before the end of the step.
+    pub(super) fn tell(&self, left: f64, observer: &mut impl Observer) {
+        observer.note_before_end(self.kind, self.impulse, left);
+        observer.book(account(self.kind), self.entry);
+    }
+}
+
+/// Whom an event is booked with.
+pub(super) fn account(kind: EventKind) -> Account {
+    match kind {
+        EventKind::Contact { .. } => Account::Contacts,
+        EventKind::Cushion { .. } => Account::Cushions,
+        EventKind::Rest { .. } => Account::Rest,
+    }
+}
+
+/// What an impulse at a touch takes and gives, `before` being the rate that it met.
+///
+/// Equation: the work of an impulse is its size times the mean of the rates before and after, and
+/// that adds up over simultaneous impulses.
+pub(super) fn work(touch: &Touch, impulse: f64, before: f64, particles: &[Particle]) -> Entry {
+    let momentum = if touch.b.is_none() {
+        touch.normal * impulse
+    } else {
+        Vector3::zeros()
+    };
+    Entry {
+        energy: 0.5 * impulse * (before + touch.rate(particles)),
+        momentum,
+    }
 }
 
 /// What was not done by the law of impact.
@@ -40,7 +81,7 @@ impl Instant<'_> {
     /// nothing depends on the order of the bodies.
     /// Source: Smith, Kaufman, Vouga, Tamstorf, Grinspun 2012, "Reflections on Simultaneous
     /// Impact", section 6.
-    pub(super) fn settle(&mut self, note: &mut dyn FnMut(EventKind, f64)) -> Settled {
+    pub(super) fn settle(&mut self, note: &mut dyn FnMut(&Note)) -> Settled {
         let mut settled = Settled::default();
         let mut stops = vec![0; self.stopped_len()];
         let mut first = 0.0_f64;
@@ -119,7 +160,7 @@ impl Instant<'_> {
         violated: &[(Touch, f64)],
         inverse: &[f64],
         restitution: impl Fn(&Touch, &[Particle]) -> f64,
-        note: &mut dyn FnMut(EventKind, f64),
+        note: &mut dyn FnMut(&Note),
     ) {
         let particles = &*self.particles;
         let inverse = |body: usize| {
@@ -139,29 +180,45 @@ impl Instant<'_> {
             .map(|(touch, _)| restitution(touch, particles))
             .collect();
         let impulses = reflected(&stopping, &es, &rates, &entry);
-        let changes: Vec<_> = violated
+        let struck: Vec<(&Touch, f64, f64)> = violated
             .iter()
             .zip(impulses)
             .filter(|(_, impulse)| *impulse > 0.0 && impulse.is_finite())
-            .flat_map(|((touch, _), impulse)| {
-                let arms = touch.arms();
-                arms.map(move |(body, arm)| (body, arm, impulse, touch.kind))
-            })
-            .map(|(body, arm, impulse, kind)| {
-                (body, arm * (impulse * inverse(body)), impulse, kind)
-            })
+            .map(|((touch, rate), impulse)| (touch, *rate, impulse))
             .collect();
-        let mut noted = None;
-        for (body, change, impulse, kind) in changes {
+        let changes: Vec<(usize, Vector3)> = struck
+            .iter()
+            .flat_map(|(touch, _, impulse)| {
+                touch.arms().map(move |(body, arm)| (body, arm * *impulse))
+            })
+            .map(|(body, push)| (body, push * inverse(body)))
+            .collect();
+        let stands = |body: usize| inverse(body) == 0.0;
+        let stands: Vec<Vec<bool>> = struck
+            .iter()
+            .map(|(touch, ..)| touch.arms().map(|(body, _)| stands(body)).collect())
+            .collect();
+        for (body, change) in changes {
             self.particles[body].velocity += change;
-            if noted.replace(kind) != Some(kind) {
-                note(kind, impulse);
-            }
+        }
+        for ((touch, rate, impulse), stands) in struck.into_iter().zip(stands) {
+            let mut entry = work(touch, impulse, rate, self.particles);
+            // Nothing for a pair, unless one of them stands.
+            let moved = touch.arms().zip(stands);
+            entry.momentum = moved
+                .filter(|(_, stands)| !stands)
+                .map(|((_, arm), _)| arm * impulse)
+                .sum();
+            note(&Note {
+                kind: touch.kind,
+                impulse,
+                entry,
+            });
         }
     }
 
     /// Stops every touching body that is slower than the rest speed; whether any was.
-    fn stop_slow(&mut self, stops: &mut [u32], note: &mut dyn FnMut(EventKind, f64)) -> bool {
+    fn stop_slow(&mut self, stops: &mut [u32], note: &mut dyn FnMut(&Note)) -> bool {
         let Some(rest) = self.rest else { return false };
         let mut any = false;
         for touch in self.touches {
@@ -169,9 +226,13 @@ impl Instant<'_> {
                 let particle = &mut self.particles[body];
                 let speed = particle.velocity.norm();
                 if speed > 0.0 && speed < rest.speed {
+                    note(&Note {
+                        kind: EventKind::Rest { body },
+                        impulse: particle.mass * speed,
+                        entry: books::rest(particle.mass, &particle.velocity),
+                    });
                     particle.velocity = Vector3::zeros();
                     stops[body] += 1;
-                    note(EventKind::Rest { body }, particle.mass * speed);
                     any = true;
                 }
             }
