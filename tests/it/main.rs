@@ -23,4 +23,5 @@ mod plain_loop;
 mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod robust;
 mod scenes;

@@ -7,39 +7,32 @@
 //! stay in touch press on each other with forces that are solved together too. Spheres that
 //! overlap at the start are moved apart once ([`overlap`]).
 
+mod clear;
 mod flow;
 mod limits;
 mod mean_force;
 mod overlap;
+mod press;
+mod search;
 mod stick;
 mod together;
 mod touch;
 
-use super::handling::{Taken, pairs};
-use super::meeting::{Along, contact, cushion, slowed};
+use super::handling::Taken;
 use super::observer::Observer;
-use super::path::Way;
 use super::phases::Phases;
 use super::scheme::Scheme;
 use super::sweep::stop;
 use super::{Particle, books};
-use crate::physics::complementarity::pushes;
 use crate::physics::{SpringDamper, Vector3};
-use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind, Wall};
+use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
 use crate::scene::Scene;
 use flow::{Flight, Flow};
 use limits::Limits;
-use together::{Instant, coupling};
+use search::Next;
+use together::Instant;
 use touch::{Touch, touching};
 
-/// Rounds in which forces between bodies find the end of a step that they lead to.
-const ROUNDS_MAX: u32 = 60;
-/// Rounds that find the pushes of surfaces in touch while other forces depend on places.
-const PUSH_ROUNDS: u32 = 6;
-/// Corrections of the time of an impact under forces that depend on places.
-const REFINEMENTS: u32 = 4;
-/// Surfaces that press and slide may turn by this angle in a step.
-const TURN: f64 = 0.05;
 /// Substeps of a step, after which they grow: the work of a step is bounded.
 const SUBSTEPS: u64 = 20_000;
 /// Impacts of a step, and a share more for few bodies, after which none bounces any more.
@@ -76,13 +69,6 @@ struct Conceded {
     turned_back: u64,
     cut_short: u64,
     jammed: u64,
-}
-
-/// What comes first in a step.
-#[derive(Debug, Clone, Copy)]
-struct Next {
-    time: f64,
-    kind: EventKind,
 }
 
 impl Scheme for Robust {
@@ -153,69 +139,6 @@ struct Spent {
 }
 
 impl Robust {
-    /// Whether nothing can meet or stop for longer than a step, where speeds never grow.
-    ///
-    /// Sets `clear`: the least time in which any two surfaces could meet at their present speeds,
-    /// or a body slow down to the rest speed.
-    fn becomes_clear(&mut self, phases: &Phases, particles: &[Particle], dt: f64) -> bool {
-        self.clear = 0.0;
-        if phases.gravity.is_some() || !self.limits.are_absent {
-            return false;
-        }
-        let mut clear = f64::INFINITY;
-        if phases.contact.is_some() {
-            for (place, a) in particles.iter().enumerate() {
-                for b in &particles[place + 1..] {
-                    let gap = (a.position - b.position).norm() - (a.radius + b.radius);
-                    let speed = (a.velocity - b.velocity).norm();
-                    // Under drag of several rates the relative speed may grow for a while.
-                    let speed = if phases.decay.is_some() && a.mass != b.mass {
-                        a.velocity.norm() + b.velocity.norm()
-                    } else {
-                        speed
-                    };
-                    clear = clear.min(gap / speed);
-                    if !(gap > 0.0) {
-                        return false;
-                    }
-                }
-            }
-        }
-        if let Some(cushions) = &phases.cushions {
-            let half = cushions.half_extents();
-            for particle in particles {
-                for axis in 0..3 {
-                    let room = half[axis] - particle.radius - particle.position[axis].abs();
-                    if !(room > 0.0) {
-                        return false;
-                    }
-                    let twice = if particle.velocity[axis] * particle.position[axis] < 0.0 {
-                        room + 2.0 * particle.position[axis].abs()
-                    } else {
-                        room
-                    };
-                    clear = clear.min(twice / particle.velocity[axis].abs());
-                }
-            }
-        }
-        if let Some(rest) = phases.rest {
-            for (particle, rate) in particles.iter().zip(self.flow.rates()) {
-                let speed = particle.velocity.norm();
-                if speed > 0.0 {
-                    if speed < rest.speed {
-                        return false;
-                    }
-                    if *rate > 0.0 {
-                        clear = clear.min((speed / rest.speed).ln() / rate);
-                    }
-                }
-            }
-        }
-        // A hair less, for the rounding of all that; NaN is not clear.
-        self.clear = clear * (1.0 - 1e-9) - dt * 1e-9;
-        self.clear >= dt
-    }
-
     /// A step in which nothing is met and no force acts.
     #[inline]
     fn coast<O: Observer>(
@@ -353,305 +276,6 @@ impl Robust {
         }
     }
 
-    /// Takes the particles over a step of that length, or a shorter one, with the pushes of what
-    /// stays in touch; gives the length taken.
-    fn press_on(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        dt: f64,
-        length: f64,
-        spent: &mut Spent,
-    ) -> f64 {
-        let mut length = length;
-        self.release();
-        let resting = self.resting(particles, dt);
-        loop {
-            length = self.travel(phases, particles, length, spent);
-            if resting.is_empty() || !self.press(phases, particles, &resting, length, spent) {
-                return length;
-            }
-            let turn = resting
-                .iter()
-                .filter(|touch| self.is_pressed(touch))
-                .map(|touch| {
-                    let Some(b) = touch.b else { return 0.0 };
-                    let reach = self.start[touch.a].radius + self.start[b].radius;
-                    (self.start[touch.a].velocity - self.start[b].velocity).norm() / reach
-                });
-            let longest = TURN / turn.fold(0.0, f64::max);
-            if length <= longest * 1.001 {
-                return length;
-            }
-            length = longest;
-            self.release();
-            particles.clone_from_slice(&self.start);
-        }
-    }
-
-    /// Takes all pushes away.
-    fn release(&mut self) {
-        self.pushes.fill(Vector3::zeros());
-        self.wall_push = Vector3::zeros();
-    }
-
-    fn is_pressed(&self, touch: &Touch) -> bool {
-        touch
-            .arms()
-            .any(|(body, _)| self.pushes[body] != Vector3::zeros())
-    }
-
-    /// The touches that neither approach nor part.
-    fn resting(&self, particles: &[Particle], dt: f64) -> Vec<Touch> {
-        let rests = |touch: &&Touch| touch.rate(particles).abs() <= touch.still(particles, dt);
-        self.touches.iter().filter(rests).copied().collect()
-    }
-
-    /// Finds the pushes that keep the gaps of resting surfaces from shrinking over the step, and
-    /// takes the step with them; whether any are needed.
-    ///
-    /// Equation: `l >= 0`, change of the gaps `g1 - g0 + B l >= 0`, one of the two zero for each.
-    /// The push of a pair acts along its mean separation, as forces between bodies do, and so
-    /// works `l (g1 - g0)`: nothing, also where surfaces slide and turn.
-    fn press(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        resting: &[Touch],
-        length: f64,
-        spent: &mut Spent,
-    ) -> bool {
-        let mut sizes = vec![0.0; resting.len()];
-        for round in 0..PUSH_ROUNDS {
-            let ends: Vec<Touch> = resting
-                .iter()
-                .map(|touch| touch.mean(phases, &self.start, particles))
-                .collect();
-            let changes: Vec<f64> = resting
-                .iter()
-                .zip(&ends)
-                .map(|(t, end)| end.gap - t.gap)
-                .collect();
-            let off = |((touch, change), size): ((&Touch, &f64), &f64)| {
-                let rounding = touch.rounding();
-                *change < -rounding || (*size > 0.0 && *change > rounding)
-            };
-            if !resting.iter().zip(&changes).zip(&sizes).any(off) {
-                return round > 0;
-            }
-            let (flow, start) = (&self.flow, &self.start);
-            let entry = |i: usize, j: usize| pressing(&ends[i], &ends[j], flow, start);
-            let row = |i: usize| {
-                (0..sizes.len())
-                    .map(|j| entry(i, j) * sizes[j])
-                    .sum::<f64>()
-            };
-            let free: Vec<f64> = changes
-                .iter()
-                .enumerate()
-                .map(|(i, g)| g - row(i))
-                .collect();
-            sizes = pushes(&entry, &free, &vec![true; free.len()]);
-            self.release();
-            for (touch, size) in ends.iter().zip(&sizes) {
-                if touch.b.is_none() {
-                    self.wall_push += touch.normal * *size;
-                }
-                for (body, arm) in touch.arms() {
-                    self.pushes[body] += arm * *size;
-                }
-            }
-            particles.clone_from_slice(&self.start);
-            self.try_travel(phases, particles, length, spent);
-        }
-        true
-    }
-
-    /// Takes the particles over a step, a shorter one if the forces find no end; gives its length.
-    fn travel(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        length: f64,
-        spent: &mut Spent,
-    ) -> f64 {
-        let mut length = length;
-        for _ in 0..40 {
-            if self.try_travel(phases, particles, length, spent) {
-                return length;
-            }
-            particles.clone_from_slice(&self.start);
-            length *= 0.5;
-        }
-        // Nothing that keeps the energy was found: the bodies go back the way they came, which
-        // keeps it. Their centre of mass goes on.
-        self.conceded.turned_back += 1;
-        turn_back(particles);
-        length
-    }
-
-    /// One attempt; whether the forces found the end of the step.
-    fn try_travel(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        h: f64,
-        spent: &mut Spent,
-    ) -> bool {
-        mean_force::set(phases, &self.start, particles, &self.pushes);
-        self.flow.advance(particles, h);
-        spent.taken.passes += u64::from(phases.forces);
-        if self.limits.are_absent {
-            return true;
-        }
-        let mut last = f64::INFINITY;
-        for _ in 0..ROUNDS_MAX {
-            self.before.clear();
-            self.before.extend(particles.iter().map(|p| p.position));
-            mean_force::set(phases, &self.start, particles, &self.pushes);
-            for (particle, start) in particles.iter_mut().zip(&self.start) {
-                (particle.position, particle.velocity) = (start.position, start.velocity);
-            }
-            self.flow.advance(particles, h);
-            spent.taken.passes += 1;
-            let (mut change, mut travel) = (0.0_f64, 0.0_f64);
-            for ((particle, before), start) in particles.iter().zip(&self.before).zip(&self.start) {
-                change = larger(change, (particle.position - before).norm());
-                travel = larger(travel, (particle.position - start.position).norm());
-            }
-            if !change.is_finite() {
-                return false;
-            }
-            // Down to rounding, where changes stop getting smaller.
-            if change == 0.0
-                || (change <= 1e-13 * travel && change >= 0.5 * last)
-                || change <= 1e-16 * travel
-            {
-                return true;
-            }
-            if change > 1e-3 * travel && change >= last {
-                return false;
-            }
-            last = change;
-        }
-        false
-    }
-
-    /// The first event on the way from the start of the step to where the particles are.
-    fn first(
-        &mut self,
-        phases: &Phases,
-        particles: &[Particle],
-        length: f64,
-        dt: f64,
-        spent: &mut Spent,
-    ) -> Option<Next> {
-        if phases.contact.is_none() && phases.cushions.is_none() && phases.rest.is_none() {
-            return None;
-        }
-        self.ways.clear();
-        for (body, (start, end)) in self.start.iter().zip(particles).enumerate() {
-            self.ways.push(self.flow.way(body, start, end, length));
-        }
-        self.travel.clear();
-        self.travel
-            .extend(self.ways.iter().map(|way| way.travel(length)));
-        if !self.travel.iter().all(|travel| travel.is_finite()) {
-            // Numbers beyond those of doubles meet nothing.
-            return None;
-        }
-        let instant = INSTANT * dt;
-        let still = |touch: &Touch| touch.rate(&self.start).abs() <= touch.still(&self.start, dt);
-        let resting: Vec<EventKind> = self
-            .touches
-            .iter()
-            .filter(|touch| still(touch))
-            .map(|touch| touch.kind)
-            .collect();
-        let mut first: Option<Next> = None;
-        let mut offer = |time: Option<f64>, kind: EventKind| {
-            if let Some(time) = time
-                && first.is_none_or(|first| time < first.time)
-            {
-                first = Some(Next { time, kind });
-            }
-        };
-        if phases.contact.is_some() {
-            spent.taken.pairs += pairs(self.ways.len() as u64);
-            for a in 0..self.ways.len() {
-                for b in a + 1..self.ways.len() {
-                    let kind = EventKind::Contact { a, b };
-                    if resting.is_empty() || !resting.contains(&kind) {
-                        let pair = [a, b].map(|body| self.along(body));
-                        offer(contact(&pair, length, instant), kind);
-                    }
-                }
-            }
-        }
-        if let Some(cushions) = &phases.cushions {
-            let half = cushions.half_extents();
-            for body in 0..self.ways.len() {
-                for wall in Wall::ALL {
-                    let kind = EventKind::Cushion { body, wall };
-                    if resting.is_empty() || !resting.contains(&kind) {
-                        offer(
-                            cushion(&self.along(body), wall, half, length, instant),
-                            kind,
-                        );
-                    }
-                }
-            }
-        }
-        if let Some(rest) = phases.rest {
-            for (body, way) in self.ways.iter().enumerate() {
-                offer(slowed(way, rest.speed, length), EventKind::Rest { body });
-            }
-        }
-        first
-    }
-
-    fn along(&self, body: usize) -> Along<'_, Flight> {
-        Along {
-            path: &self.ways[body],
-            radius: self.start[body].radius,
-            travel: self.travel[body],
-        }
-    }
-
-    /// Takes the particles from the start of the step to an event; gives the time that takes.
-    fn go_to(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        dt: f64,
-        next: Next,
-        spent: &mut Spent,
-    ) -> f64 {
-        let mut time = next.time;
-        let refinements = if self.limits.are_absent {
-            0
-        } else {
-            REFINEMENTS
-        };
-        for round in 0..=refinements {
-            particles.clone_from_slice(&self.start);
-            if time > 0.0 {
-                time = self.press_on(phases, particles, dt, time, spent);
-            }
-            let touch = Touch::of(next.kind, phases, particles);
-            let Some(touch) = touch.filter(|touch| touch.gap.abs() > 0.1 * touch.near) else {
-                break;
-            };
-            let rate = touch.rate(particles);
-            let better = time - touch.gap / rate;
-            if round == refinements || rate >= 0.0 || !(better > 0.0 && better <= 2.0 * next.time) {
-                break;
-            }
-            time = better;
-        }
-        time
-    }
-
     /// Lets the event happen, and all others of the same instant with it.
     #[allow(clippy::too_many_arguments, reason = "one call, of one step")]
     fn meet(
@@ -705,39 +329,4 @@ impl Robust {
             }
         }
     }
-}
-
-/// `max` that does not pass over what is not a number.
-fn larger(most: f64, value: f64) -> f64 {
-    if value > most || value.is_nan() {
-        value
-    } else {
-        most
-    }
-}
-
-/// Turns velocities back, relative to that of the centre of mass.
-fn turn_back(particles: &mut [Particle]) {
-    let mass: f64 = particles.iter().map(|p| p.mass).sum();
-    let momentum: Vector3 = particles.iter().map(|p| p.velocity * p.mass).sum();
-    for particle in particles {
-        particle.velocity = momentum * (2.0 / mass) - particle.velocity;
-    }
-}
-
-/// What a unit push at one touch over the step does to the gap of another at its end.
-fn pressing(one: &Touch, other: &Touch, flow: &Flow, particles: &[Particle]) -> f64 {
-    if flow.is_coupled() {
-        let all = one.arms().flat_map(|(body, arm)| {
-            other
-                .arms()
-                .map(move |(theirs, push)| (body, arm, theirs, push))
-        });
-        return all
-            .map(|(body, arm, theirs, push)| {
-                arm.dot(&push) * flow.mobility(body, theirs, particles)
-            })
-            .sum();
-    }
-    coupling(one, other, &|body| flow.mobility(body, body, particles))
 }

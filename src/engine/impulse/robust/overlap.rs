@@ -4,7 +4,7 @@ use super::super::Particle;
 use super::super::contacts::line_of_action;
 use super::super::phases::Phases;
 use crate::physics::Vector3;
-use crate::scene::overlap::for_each_overlap;
+use crate::scene::overlap::{Overlap, overlaps};
 
 /// Rounds of pushing, after which what still overlaps is left so: a box too small for its balls.
 const ROUNDS_MAX: u32 = 5000;
@@ -13,40 +13,62 @@ const ROUNDS_MAX: u32 = 5000;
 const MORE: f64 = 1e-7;
 /// Over-relaxation of the mean push of each body.
 const RELAXATION: f64 = 1.5;
+/// Share of the last move that is made again: a heap grows outwards in as many rounds as it has
+/// layers, not in their square.
+const MOMENTUM: f64 = 0.9;
 
 /// Moves overlapping spheres apart and back into the box, velocities untouched; whether nothing
 /// overlaps any more.
 ///
-/// In rounds: every overlap asks its two spheres for half of it each, in the inverse ratio of the
-/// masses so that the centre of mass stays; every sphere follows the mean of what it is asked for,
-/// all at once, so that no order of bodies decides.
+/// In rounds: every overlap asks its two spheres to part, in the inverse ratio of the masses and
+/// by a share that both can follow, so that the centre of mass stays; all move at once, so that
+/// no order of bodies decides. Moves go on with momentum, which is lost where overlaps grow.
 /// Source: the projection of position-based dynamics, Jacobi form: Macklin et al. 2014, "Unified
-/// particle physics for real-time applications", section 4.
+/// particle physics for real-time applications", section 4; momentum with restarts: `O'Donoghue`
+/// and Candès 2015, "Adaptive restart for accelerated gradient schemes".
 pub(super) fn separate(phases: &Phases, particles: &mut [Particle]) -> bool {
-    let mut asked: Vec<(Vector3, f64)> = Vec::new();
+    let mut moves = vec![Vector3::zeros(); particles.len()];
+    let mut last = f64::INFINITY;
     for _ in 0..ROUNDS_MAX {
-        asked.clear();
-        asked.resize(particles.len(), (Vector3::zeros(), 0.0));
-        ask_pairs(phases, particles, &mut asked);
-        let apart = asked.iter().all(|(_, count)| *count == 0.0);
-        for (particle, (push, count)) in particles.iter_mut().zip(&asked) {
-            if *count > 0.0 {
-                particle.position += push * (RELAXATION / count).min(1.0);
+        let found = overlapping(phases, particles);
+        let size: f64 = found
+            .iter()
+            .map(|overlap| overlap.depth * overlap.depth)
+            .sum();
+        let kept = if size < last { MOMENTUM } else { 0.0 };
+        last = size;
+        for own in &mut moves {
+            *own *= kept;
+        }
+        part(particles, &found, &mut moves);
+        if !found.is_empty() {
+            for (particle, own) in particles.iter_mut().zip(&moves) {
+                particle.position += own;
             }
         }
-        if into_box(phases, particles) && apart {
+        if into_box(phases, particles) && found.is_empty() {
             return true;
         }
     }
     false
 }
 
-fn ask_pairs(phases: &Phases, particles: &[Particle], asked: &mut [(Vector3, f64)]) {
+fn overlapping(phases: &Phases, particles: &[Particle]) -> Vec<Overlap> {
     if phases.contact.is_none() {
-        return;
+        return Vec::new();
     }
     let spheres: Vec<_> = particles.iter().map(|p| (p.position, p.radius)).collect();
-    for_each_overlap(&spheres, |overlap| {
+    overlaps(&spheres)
+}
+
+/// Adds what the overlaps ask for to the moves.
+fn part(particles: &[Particle], overlaps: &[Overlap], moves: &mut [Vector3]) {
+    let mut counts = vec![0_u32; particles.len()];
+    for overlap in overlaps {
+        counts[overlap.a] += 1;
+        counts[overlap.b] += 1;
+    }
+    for overlap in overlaps {
         let (a, b) = (&particles[overlap.a], &particles[overlap.b]);
         let apart = a.position - b.position;
         let distance = apart.norm();
@@ -54,13 +76,13 @@ fn ask_pairs(phases: &Phases, particles: &[Particle], asked: &mut [(Vector3, f64
         if distance == 0.0 {
             normal = fanned_out(normal, overlap.a, overlap.b);
         }
-        let push = overlap.depth + MORE * (a.radius + b.radius);
+        let most = counts[overlap.a].max(counts[overlap.b]);
+        let relaxed = (RELAXATION / f64::from(most)).min(1.0);
+        let push = (overlap.depth + MORE * (a.radius + b.radius)) * relaxed;
         let share = b.mass / (a.mass + b.mass);
-        asked[overlap.a].0 += normal * (push * share);
-        asked[overlap.b].0 -= normal * (push * (1.0 - share));
-        asked[overlap.a].1 += 1.0;
-        asked[overlap.b].1 += 1.0;
-    });
+        moves[overlap.a] += normal * (push * share);
+        moves[overlap.b] -= normal * (push * (1.0 - share));
+    }
 }
 
 /// A direction for two of several coincident spheres, so that a heap of them does not stay on one

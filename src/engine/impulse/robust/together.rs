@@ -8,10 +8,13 @@ use crate::physics::complementarity::pushes;
 use crate::recording::{Account, Entry, EventKind};
 use crate::scene::Rest;
 
-/// Reflections after which what still approaches is brought to rest.
+/// Reflections after which what still approaches is brought to rest. Without loss they end by
+/// themselves, in fewer than this.
 const REFLECTIONS_MAX: u32 = 2000;
-/// Approach slower than this share of the first is brought to rest, where restitution loses.
-const SPENT: f64 = 1e-12;
+/// Approach slower than this share of the first is brought to rest, where restitution loses …
+const SPENT: f64 = 1e-9;
+/// … and any after so many reflections: in a dense heap they would go on long, and lose the rest.
+const LOSING_MAX: u32 = 100;
 /// Stops after which a body counts as standing for the rest of the instant.
 const STOPS_MAX: u32 = 20;
 
@@ -110,9 +113,10 @@ impl Instant<'_> {
                 (least.min(e), most.max(e))
             });
             // Where nothing bounces, one solution for all touches is the end of it.
-            let spent = most == 0.0 || (least < 1.0 && worst <= SPENT * first);
+            let loses = least < 1.0 && (worst <= SPENT * first || round >= LOSING_MAX);
+            let spent = most == 0.0 || loses;
             if round >= REFLECTIONS_MAX || spent {
-                settled.cut_short |= round >= REFLECTIONS_MAX;
+                settled.cut_short |= most > 0.0 && worst > SPENT * first;
                 let all: Vec<(Touch, f64)> = self
                     .touches
                     .iter()
