@@ -4,7 +4,7 @@ use super::dormand_prince::DormandPrince;
 use super::handling::Overlap;
 use super::motion::{Euler, Verlet};
 use super::phases::Phases;
-use super::robust::Robust;
+use super::robust::{self, Robust};
 use super::runge_kutta::RungeKutta;
 use super::scheme::Stepped;
 use super::simulation::ImpulseSimulation;
@@ -59,6 +59,9 @@ pub fn simulation(
 #[must_use]
 pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let phases = Phases::of(scene, settings.drag);
+    if settings.integrator == Integrator::EnergyMomentum {
+        return robust::plan::plan(&phases);
+    }
     let swept = matches!(settings.impacts, Impacts::Swept | Impacts::Together);
     let forces = [
         present(phases.forces, "clear", "forces to zero".to_owned()),
@@ -158,17 +161,8 @@ fn motion_phases(phases: &Phases, integrator: Integrator) -> [Option<Phase>; 3] 
             None,
             None,
         ],
-        Integrator::EnergyMomentum => [
-            present(
-                true,
-                "motion",
-                "closed forms under drag and dampers; forces that do the work of their potentials"
-                    .to_owned(),
-            ),
-            None,
-            None,
-        ],
-        Integrator::DormandPrince => [
+        // `robust` has a plan of its own.
+        Integrator::DormandPrince | Integrator::EnergyMomentum => [
             present(
                 true,
                 "motion",

@@ -12,11 +12,13 @@ mod flow;
 mod limits;
 mod mean_force;
 mod overlap;
+pub(super) mod plan;
 mod press;
 mod search;
 mod stick;
 mod together;
 mod touch;
+mod work;
 
 use super::handling::Taken;
 use super::observer::Observer;
@@ -32,12 +34,8 @@ use limits::Limits;
 use search::Next;
 use together::Instant;
 use touch::{Touch, touching};
+use work::Work;
 
-/// Substeps of a step, after which they grow: the work of a step is bounded.
-const SUBSTEPS: u64 = 20_000;
-/// Impacts of a step, and a share more for few bodies, after which none bounces any more.
-const IMPACTS: u64 = 20_000;
-const IMPACTS_SHARED: u64 = 1_000_000;
 /// Share of a step below which two instants are one.
 const INSTANT: f64 = 1e-13;
 
@@ -59,6 +57,7 @@ pub struct Robust {
     clear: f64,
     /// Whether overlaps could not be resolved.
     jammed: bool,
+    work: Work,
     conceded: Conceded,
 }
 
@@ -87,6 +86,7 @@ impl Scheme for Robust {
             wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
+            work: Work::default(),
             conceded: Conceded::default(),
         }
     }
@@ -130,14 +130,6 @@ impl Scheme for Robust {
     }
 }
 
-/// Counters of one step.
-#[derive(Debug, Clone, Copy, Default)]
-struct Spent {
-    taken: Taken,
-    substeps: u64,
-    impacts: u64,
-}
-
 impl Robust {
     /// A step in which nothing is met and no force acts.
     #[inline]
@@ -166,30 +158,29 @@ impl Robust {
         dt: f64,
         observer: &mut O,
     ) -> Taken {
-        let mut spent = Spent::default();
+        self.work.begin_step();
         let mut left = dt;
         self.make_room(phases, particles, observer);
         while left > 0.0 {
-            let wanted = self.wanted(phases, particles, dt, &spent);
+            let wanted = self.wanted(phases, particles, dt);
             let mut length = if wanted < left { wanted } else { left };
             touching(phases, particles, &mut self.touches);
             self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
-            length = self.press_on(phases, particles, dt, length, &mut spent);
-            spent.substeps += 1;
-            let Some(next) = self.first(phases, particles, length, dt, &mut spent) else {
+            length = self.press_on(phases, particles, dt, length);
+            let Some(next) = self.first(phases, particles, length, dt) else {
                 self.book_motion(phases, particles, length, observer);
                 left = if length >= left { 0.0 } else { left - length };
                 self.stop_slow(phases, particles, left, observer);
                 continue;
             };
-            let went = self.go_to(phases, particles, dt, next, &mut spent);
+            let went = self.go_to(phases, particles, dt, next);
             self.book_motion(phases, particles, went, observer);
             left = (left - went).max(0.0);
-            self.meet(phases, particles, dt, next, left, &mut spent, observer);
+            self.meet(phases, particles, dt, next, left, observer);
         }
-        spent.taken
+        self.work.taken
     }
 
     /// Books a motion from the start of the step, pushes of walls included.
@@ -226,24 +217,18 @@ impl Robust {
         }
     }
 
-    /// The longest step that the effects allow, longer when very many were taken already.
-    fn wanted(&mut self, phases: &Phases, particles: &[Particle], dt: f64, spent: &Spent) -> f64 {
+    /// The longest step that the effects allow, or that the work allowed does.
+    fn wanted(&mut self, phases: &Phases, particles: &[Particle], dt: f64) -> f64 {
         if self.limits.are_absent {
             return f64::INFINITY;
         }
-        let wanted = self.limits.length(phases, particles).max(dt * INSTANT);
-        let grown = spent.substeps / SUBSTEPS;
-        if grown == 0 {
+        let wanted = self.limits.length(phases, particles);
+        let shortest = self.work.shortest(dt);
+        if wanted >= shortest {
             return wanted;
         }
         self.conceded.long_steps += 1;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_possible_wrap,
-            reason = "small"
-        )]
-        let factor = 2.0_f64.powi(grown.min(1000) as i32);
-        wanted * factor
+        shortest
     }
 
     /// Moves overlapping surfaces apart, unless there is no room for that.
@@ -285,10 +270,8 @@ impl Robust {
         dt: f64,
         next: Next,
         left: f64,
-        spent: &mut Spent,
         observer: &mut impl Observer,
     ) {
-        spent.impacts += 1;
         touching(phases, particles, &mut self.touches);
         if self.touches.iter().all(|touch| touch.kind != next.kind) {
             self.touches.extend(Touch::of(next.kind, phases, particles));
@@ -296,8 +279,7 @@ impl Robust {
         if let EventKind::Rest { body } = next.kind {
             stop(&mut particles[body], body, left, observer);
         }
-        let most = IMPACTS + IMPACTS_SHARED / (particles.len() as u64).max(1);
-        if spent.impacts > most {
+        if self.work.bounces_no_more(particles.len()) {
             self.conceded.cut_short += 1;
             for touch in &mut self.touches {
                 touch.restitution = 0.0;
@@ -310,6 +292,7 @@ impl Robust {
             dt,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
+        self.work.impacts += settled.rounds;
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 

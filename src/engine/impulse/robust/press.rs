@@ -3,7 +3,7 @@
 use super::flow::Flow;
 use super::together::coupling;
 use super::touch::Touch;
-use super::{Robust, Spent, mean_force};
+use super::{Robust, mean_force};
 use crate::engine::impulse::Particle;
 use crate::engine::impulse::phases::Phases;
 use crate::physics::Vector3;
@@ -13,6 +13,8 @@ use crate::physics::complementarity::pushes;
 const ROUNDS_MAX: u32 = 60;
 /// Rounds that find the pushes of surfaces in touch while other forces depend on places.
 const PUSH_ROUNDS: u32 = 6;
+/// Halvings of a step, before it is given up.
+const HALVINGS: u32 = 10;
 /// Surfaces that press and slide may turn by this angle in a step.
 const TURN: f64 = 0.05;
 
@@ -25,14 +27,13 @@ impl Robust {
         particles: &mut [Particle],
         dt: f64,
         length: f64,
-        spent: &mut Spent,
     ) -> f64 {
         let mut length = length;
         self.release();
         let resting = self.resting(particles, dt);
         loop {
-            length = self.travel(phases, particles, length, spent);
-            if resting.is_empty() || !self.press(phases, particles, &resting, length, spent) {
+            length = self.travel(phases, particles, length);
+            if resting.is_empty() || !self.press(phases, particles, &resting, length) {
                 return length;
             }
             let turn = resting
@@ -43,7 +44,7 @@ impl Robust {
                     let reach = self.start[touch.a].radius + self.start[b].radius;
                     (self.start[touch.a].velocity - self.start[b].velocity).norm() / reach
                 });
-            let longest = TURN / turn.fold(0.0, f64::max);
+            let longest = (TURN / turn.fold(0.0, f64::max)).max(self.work.shortest(dt));
             if length <= longest * 1.001 {
                 return length;
             }
@@ -83,7 +84,6 @@ impl Robust {
         particles: &mut [Particle],
         resting: &[Touch],
         length: f64,
-        spent: &mut Spent,
     ) -> bool {
         let mut sizes = vec![0.0; resting.len()];
         for round in 0..PUSH_ROUNDS {
@@ -126,45 +126,33 @@ impl Robust {
                 }
             }
             particles.clone_from_slice(&self.start);
-            self.try_travel(phases, particles, length, spent);
+            self.try_travel(phases, particles, length);
         }
         true
     }
 
     /// Takes the particles over a step, a shorter one if the forces find no end; gives its length.
-    fn travel(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        length: f64,
-        spent: &mut Spent,
-    ) -> f64 {
-        let mut length = length;
-        for _ in 0..40 {
-            if self.try_travel(phases, particles, length, spent) {
-                return length;
+    fn travel(&mut self, phases: &Phases, particles: &mut [Particle], length: f64) -> f64 {
+        let mut shorter = length;
+        for _ in 0..HALVINGS {
+            if self.try_travel(phases, particles, shorter) {
+                return shorter;
             }
             particles.clone_from_slice(&self.start);
-            length *= 0.5;
+            shorter *= 0.5;
         }
-        // Nothing that keeps the energy was found: the bodies go back the way they came, which
-        // keeps it. Their centre of mass goes on.
+        // Nothing that keeps the energy was found: the bodies stay and go back the way they came,
+        // relative to their centre of mass, which keeps energy and momentum.
         self.conceded.turned_back += 1;
         turn_back(particles);
         length
     }
 
     /// One attempt; whether the forces found the end of the step.
-    fn try_travel(
-        &mut self,
-        phases: &Phases,
-        particles: &mut [Particle],
-        h: f64,
-        spent: &mut Spent,
-    ) -> bool {
+    fn try_travel(&mut self, phases: &Phases, particles: &mut [Particle], h: f64) -> bool {
         mean_force::set(phases, &self.start, particles, &self.pushes);
         self.flow.advance(particles, h);
-        spent.taken.passes += u64::from(phases.forces);
+        self.work.taken.passes += u64::from(phases.forces);
         if self.limits.are_absent {
             return true;
         }
@@ -177,7 +165,7 @@ impl Robust {
                 (particle.position, particle.velocity) = (start.position, start.velocity);
             }
             self.flow.advance(particles, h);
-            spent.taken.passes += 1;
+            self.work.taken.passes += 1;
             let (mut change, mut travel) = (0.0_f64, 0.0_f64);
             for ((particle, before), start) in particles.iter().zip(&self.before).zip(&self.start) {
                 change = larger(change, (particle.position - before).norm());

@@ -2,7 +2,7 @@
 
 use super::flow::Flight;
 use super::touch::Touch;
-use super::{INSTANT, Robust, Spent};
+use super::{INSTANT, Robust};
 use crate::engine::impulse::Particle;
 use crate::engine::impulse::handling::pairs;
 use crate::engine::impulse::meeting::{Along, contact, cushion, slowed};
@@ -28,9 +28,10 @@ impl Robust {
         particles: &[Particle],
         length: f64,
         dt: f64,
-        spent: &mut Spent,
     ) -> Option<Next> {
-        if phases.contact.is_none() && phases.cushions.is_none() && phases.rest.is_none() {
+        let nothing =
+            phases.contact.is_none() && phases.cushions.is_none() && phases.rest.is_none();
+        if nothing || self.work.meets_no_more(particles.len()) {
             return None;
         }
         self.ways.clear();
@@ -61,7 +62,7 @@ impl Robust {
             }
         };
         if phases.contact.is_some() {
-            spent.taken.pairs += pairs(self.ways.len() as u64);
+            self.work.taken.pairs += pairs(self.ways.len() as u64);
             for a in 0..self.ways.len() {
                 for b in a + 1..self.ways.len() {
                     let kind = EventKind::Contact { a, b };
@@ -109,7 +110,6 @@ impl Robust {
         particles: &mut [Particle],
         dt: f64,
         next: Next,
-        spent: &mut Spent,
     ) -> f64 {
         let mut time = next.time;
         let refinements = if self.limits.are_absent {
@@ -120,7 +120,7 @@ impl Robust {
         for round in 0..=refinements {
             particles.clone_from_slice(&self.start);
             if time > 0.0 {
-                time = self.press_on(phases, particles, dt, time, spent);
+                time = self.press_on(phases, particles, dt, time);
             }
             let touch = Touch::of(next.kind, phases, particles);
             let Some(touch) = touch.filter(|touch| touch.gap.abs() > 0.1 * touch.near) else {

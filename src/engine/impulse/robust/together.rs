@@ -72,6 +72,8 @@ pub(super) fn work(touch: &Touch, impulse: f64, before: f64, particles: &[Partic
 pub(super) struct Settled {
     /// Whether endless impacts were cut short.
     pub(super) cut_short: bool,
+    /// Rounds of reflections.
+    pub(super) rounds: u64,
 }
 
 impl Instant<'_> {
@@ -89,6 +91,7 @@ impl Instant<'_> {
         let mut stops = vec![0; self.stopped_len()];
         let mut first = 0.0_f64;
         for round in 0.. {
+            settled.rounds += 1;
             let inverse = self.inverse_masses(&stops);
             let violated: Vec<(Touch, f64)> = self
                 .touches
