@@ -10,7 +10,7 @@ use crate::physics::Vector3;
 use crate::physics::complementarity::pushes;
 
 /// Rounds in which forces between bodies find the end of a step that they lead to.
-const ROUNDS_MAX: u32 = 60;
+const ROUNDS_MAX: u32 = 40;
 /// Rounds that find the pushes of surfaces in touch while other forces depend on places.
 const PUSH_ROUNDS: u32 = 6;
 /// Halvings of a step, before it is given up.
@@ -144,6 +144,7 @@ impl Robust {
         // Nothing that keeps the energy was found: the bodies stay and go back the way they came,
         // relative to their centre of mass, which keeps energy and momentum.
         self.conceded.turned_back += 1;
+        self.work.charge_failure();
         turn_back(particles);
         length
     }

@@ -32,6 +32,11 @@ impl Work {
         self.taken = Taken::default();
     }
 
+    /// A substep that led nowhere costs a whole allowance: where one does, more will.
+    pub(super) fn charge_failure(&mut self) {
+        self.carried += PASSES_A_STEP;
+    }
+
     /// The shortest substep of a step: it doubles with every allowance that is overdrawn.
     pub(super) fn shortest(&self, dt: f64) -> f64 {
         let overdrawn = (self.carried + self.taken.passes) / PASSES_A_STEP;
