@@ -14,10 +14,10 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Everything that can keep carom from running.
 #[derive(Debug, Error)]
 pub enum Error {
-    /// A scene file says something that is not a scene.
+    /// A file of data, a scene or what must hold on it, says something that makes no sense.
     #[error("{file}:{line}:{column}: {message}")]
-    SceneFile {
-        /// The scene file.
+    DataFile {
+        /// The file.
         file: String,
         /// Line, counted from 1.
         line: usize,
@@ -78,6 +78,19 @@ pub enum Error {
         /// What was found, and what would be right.
         message: String,
     },
+    /// Points of another build that cannot stand beside those measured now.
+    #[error(
+        "{path}: has {what} {found}; join files of other builds, measured with the same --dt, \
+         --filling, --open and --seed"
+    )]
+    Join {
+        /// The file.
+        path: PathBuf,
+        /// What is in the way.
+        what: &'static str,
+        /// What the file says.
+        found: String,
+    },
     /// No engine of that name.
     #[error("no engine is called `{name}`; there are: {known}")]
     UnknownEngine {
@@ -112,9 +125,27 @@ pub enum Error {
         /// The engine.
         name: String,
     },
+    /// No study of that name.
+    #[error("no study is called `{name}`; there are: {known}")]
+    UnknownStudy {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// What a study has left cannot be read back.
+    #[error("{path}: {message}; left out, `carom report --studies {study}` makes it anew")]
+    StoredStudy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+        /// The study.
+        study: &'static str,
+    },
     /// No scene file and no case of that name.
     #[error(
-        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases{hint}"
+        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}"
     )]
     UnknownCase {
         /// The name asked for.

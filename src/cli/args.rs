@@ -33,6 +33,11 @@ impl EngineArgs {
         Ok(())
     }
 
+    /// Whether engines were asked for by name.
+    pub fn are_named(&self) -> bool {
+        !self.names.is_empty()
+    }
+
     /// The engines asked for, or these of the ones this build has.
     pub fn specs(&self, default: &[&str]) -> Result<Vec<EngineSpec>> {
         chosen(&self.names, default)

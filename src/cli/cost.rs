@@ -1,41 +1,54 @@
 //! `carom cost`: what accuracy costs in time, on every engine.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::args::{LibraryArgs, chosen};
+use super::bodies;
 use super::output::{progress, say, warn};
+use super::studies::{COST_OPTIONS, Order};
 use crate::case::scene_or_case;
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::report::{CostReport, Folder, write_cost};
-use crate::study::cost::{CostOptions, Machine, Stage, scene_cost};
+use crate::report::{CostReport, Folder};
+use crate::scene::Scene;
+use crate::study::Timing;
+use crate::study::cost::{CostOptions, PHASES_MIN, Stage, scene_cost};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene files, or names of cases
-    #[arg(required = true)]
+    #[arg(required_unless_present = "sizes")]
     scenes: Vec<String>,
     /// Engines, separated by commas [default: all but exact, which errors are measured against]
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     #[command(flatten)]
+    bodies: bodies::Args,
+    #[command(flatten)]
     library: LibraryArgs,
-    /// Folder for the files
-    #[arg(long, value_name = "DIR", default_value = "runs/cost")]
-    out: PathBuf,
+    /// Folder for the files [default: runs/cost, or runs/bodies with --bodies]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Seed of the order of runs and of the intervals
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Rounds of timing after a warm-up
-    #[arg(long, default_value_t = 5)]
+    /// Rounds of timing after a warm-up; ratios have an interval from 6 on
+    #[arg(long, default_value_t = 7)]
     repetitions: usize,
-    /// Work a run may take, in steps x (bodies + pairs)
-    #[arg(long, default_value_t = 1_000_000)]
-    budget: u64,
+    /// Work a run may take, in steps x (bodies + pairs) [default: 1000000, or 300000000 with
+    /// --bodies]
+    #[arg(long)]
+    budget: Option<u64>,
+    /// Later starts from which every engine runs again, for orders and limits; best odd
+    #[arg(long, default_value_t = 7)]
+    phases: usize,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
 }
+
+/// Work a run may take unless told otherwise.
+const BUDGET: u64 = 1_000_000;
 
 /// Whether it is the engine that errors are measured against.
 fn is_reference(spec: &EngineSpec) -> bool {
@@ -62,7 +75,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let specs = specs(&args.names)?;
     for (argument, is_zero) in [
         ("repetitions", args.repetitions == 0),
-        ("budget", args.budget == 0),
+        ("budget", args.budget == Some(0)),
     ] {
         if is_zero {
             return Err(Error::Argument {
@@ -72,51 +85,55 @@ pub(super) fn run(args: &Args) -> Result<()> {
             });
         }
     }
+    if args.phases < PHASES_MIN {
+        return Err(Error::Argument {
+            argument: "phases",
+            found: args.phases.to_string(),
+            remedy: format!("give at least {PHASES_MIN}: fewer have no scatter to speak of"),
+        });
+    }
+    let timing = Timing {
+        seed: args.seed,
+        repetitions: args.repetitions,
+    };
+    let out = |folder: &str| {
+        args.out
+            .clone()
+            .unwrap_or_else(|| Path::new("runs").join(folder))
+    };
+    if !args.bodies.sizes.is_empty() {
+        let out = out("bodies");
+        return args
+            .bodies
+            .run(&specs, timing, args.budget, &out, args.quiet);
+    }
     let library = args.library.library();
-    let mut scenes = Vec::new();
+    let mut scenes: Vec<Scene> = Vec::new();
     for name in &args.scenes {
         let scene = scene_or_case(name, &library)?.scene;
-        if scenes
-            .iter()
-            .all(|known: &crate::scene::Scene| known.name != scene.name)
-        {
+        if scenes.iter().all(|known| known.name != scene.name) {
             scenes.push(scene);
         }
     }
     let options = CostOptions {
-        seed: args.seed,
-        repetitions: args.repetitions,
-        budget: args.budget,
+        timing,
+        budget: args.budget.unwrap_or(BUDGET),
+        phases: args.phases,
     };
-    let folder = Folder::open(&args.out)?;
-    let mut report = CostReport {
-        options,
-        machine: Machine::this(),
-        scenes: Vec::new(),
-    };
+    let folder = Folder::open(&out("cost"))?;
     for scene in &scenes {
         for warning in scene.warnings() {
             warn(format_args!("{}: {warning}", scene.name));
         }
-        let bar = progress(1, args.quiet);
-        let cost = scene_cost(scene, &specs, &options, &|stage, done, all| {
-            let doing = match stage {
-                Stage::Reference => "reference",
-                Stage::Errors => "errors",
-                Stage::Pricing => "prices",
-            };
-            bar.set_length(all as u64);
-            bar.set_position(done as u64);
-            bar.set_message(format!("{}: {doing}", scene.name));
-        })?;
-        bar.finish_and_clear();
-        for note in &cost.notes {
-            warn(format_args!("{}: {note}", scene.name));
-        }
-        report.scenes.push(cost);
-        // After each scene, so that an interrupted study leaves what it has found.
-        write_cost(&folder, &report)?;
     }
+    let scenes: Vec<&Scene> = scenes.iter().collect();
+    Measuring {
+        specs: &specs,
+        options,
+        quiet: args.quiet,
+        warns: true,
+    }
+    .measure(&scenes, &folder)?;
     if args.quiet {
         return Ok(());
     }
@@ -124,4 +141,60 @@ pub(super) fn run(args: &Args) -> Result<()> {
         "Written to {}",
         folder.path().join("README.md").display()
     ))
+}
+
+/// The study as a part of a report.
+pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
+    let named = order.engines.unwrap_or_default().iter().cloned();
+    let mut engines: Vec<EngineSpec> = named.filter(|spec| !is_reference(spec)).collect();
+    if engines.is_empty() {
+        engines = specs(&[])?;
+    }
+    Measuring {
+        specs: &engines,
+        options: COST_OPTIONS,
+        quiet: order.quiet,
+        warns: false,
+    }
+    .measure(order.scenes, folder)
+}
+
+/// How scenes are measured.
+struct Measuring<'a> {
+    specs: &'a [EngineSpec],
+    options: CostOptions,
+    /// Whether no progress is shown.
+    quiet: bool,
+    /// Whether what the reader must know is told at once, and not on the page alone.
+    warns: bool,
+}
+
+impl Measuring<'_> {
+    /// Measures scene by scene and writes after each, so that an interrupted study leaves what it
+    /// has found.
+    fn measure(&self, scenes: &[&Scene], folder: &Folder) -> Result<()> {
+        let mut report = CostReport::begin(folder.clone(), self.options);
+        for (place, scene) in scenes.iter().enumerate() {
+            let bar = progress(1, self.quiet);
+            let turn = format!("{}/{}", place + 1, scenes.len());
+            let cost = scene_cost(scene, self.specs, &self.options, &|stage, done, all| {
+                let doing = match stage {
+                    Stage::Reference => "reference",
+                    Stage::Errors => "errors",
+                    Stage::Phases => "errors from later starts",
+                    Stage::Pricing => "prices",
+                    Stage::PushOut => "prices of push-out",
+                };
+                bar.set_length(all as u64);
+                bar.set_position(done as u64);
+                bar.set_message(format!("{turn} {}: {doing}", scene.name));
+            })?;
+            bar.finish_and_clear();
+            for note in cost.notes.iter().filter(|_| self.warns) {
+                warn(format_args!("{}: {note}", scene.name));
+            }
+            report.add(cost)?;
+        }
+        Ok(())
+    }
 }

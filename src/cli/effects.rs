@@ -7,7 +7,7 @@ use super::output::{say, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
 use crate::report::{Folder, effects_findings, effects_table, write_effects};
-use crate::study::{Change, effects};
+use crate::study::{Change, Timing, effects};
 
 /// Repetitions beyond this are a slip of the pen.
 const REPETITIONS_MAX: usize = 10_000;
@@ -23,9 +23,12 @@ pub(super) struct Args {
     engines: EngineArgs,
     #[command(flatten)]
     library: LibraryArgs,
-    /// Timed repetitions of each row
+    /// Timed repetitions of each row; ratios have an interval from 6 on
     #[arg(long, value_name = "N", default_value_t = 11)]
     repetitions: usize,
+    /// Seed of the order of runs and of the intervals
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
     /// Folder for the files [default: runs/effects-<scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -58,7 +61,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     args.engines.prepare(scene, &specs)?;
     let folder = Folder::open(&out)?;
     let bar = spinner(&scene.name, args.quiet);
-    let study = effects(scene, &specs, args.engines.dt, args.repetitions)?;
+    let timing = Timing {
+        seed: args.seed,
+        repetitions: args.repetitions,
+    };
+    let study = effects(scene, &specs, args.engines.dt, timing)?;
     write_effects(&folder, &study)?;
     bar.finish_and_clear();
     let unchanged = study

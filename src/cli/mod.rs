@@ -1,6 +1,7 @@
 //! The command line: clap types, one file a subcommand.
 
 mod args;
+mod bodies;
 mod cost;
 mod effects;
 mod output;
@@ -8,6 +9,7 @@ mod plan;
 mod report;
 mod run;
 mod scenes;
+mod studies;
 
 use clap::{Parser, Subcommand};
 
@@ -28,7 +30,8 @@ enum Command {
     Report(report::Args),
     /// Run one scene on some engines and write what they did
     Run(run::Args),
-    /// Run scenes on every engine over a ladder of steps: what does accuracy cost in time?
+    /// Run scenes on every engine over a ladder of steps, or a gas of more and more bodies: what
+    /// does accuracy cost in time?
     Cost(cost::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),

@@ -6,10 +6,12 @@ use rayon::prelude::*;
 
 use super::args::{EngineArgs, LibraryArgs, REPORTED};
 use super::output::{progress, say, warn};
-use crate::case::Case;
+use super::studies::{self, Order};
+use crate::case::{self, Case};
+use crate::engine::EngineSpec;
 use crate::error::{Error, Result};
-use crate::report::{Folder, Place, write_comparison, write_index};
-use crate::study::side_by_side;
+use crate::report::{Folder, Place, Studies, write_comparison, write_index};
+use crate::study::{Summary, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -19,6 +21,10 @@ pub(super) struct Args {
     engines: EngineArgs,
     #[command(flatten)]
     library: LibraryArgs,
+    /// Studies to make beside the cases, separated by commas: cost (some minutes). Without it the
+    /// report tells of those that its folder holds already, with their date
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    studies: Vec<String>,
     /// Folder for the report
     #[arg(long, value_name = "DIR", default_value = "reports")]
     out: PathBuf,
@@ -30,25 +36,13 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Result<()> {
     let specs = args.engines.specs(&REPORTED)?;
     let dt = args.engines.dt;
-    let library = args.library.library();
-    let mut names = if args.cases.is_empty() {
-        library.names()?
-    } else {
-        args.cases.clone()
-    };
-    names.sort();
-    names.dedup();
-    let cases = names
+    let cases = cases(args)?;
+    let scenes: Vec<_> = cases.iter().map(|case| &case.scene).collect();
+    let asked = studies::asked(&args.studies, &scenes)?;
+    let pairs = cases
         .iter()
-        .map(|name| library.case(name))
-        .collect::<Result<Vec<Case>>>()?;
-    if cases.is_empty() {
-        return Err(Error::NoCases);
-    }
-    for (case, spec) in cases
-        .iter()
-        .flat_map(|case| specs.iter().map(move |spec| (case, spec)))
-    {
+        .flat_map(|case| specs.iter().map(move |spec| (case, spec)));
+    for (case, spec) in pairs {
         match crate::engine::prepare(&case.scene, spec, dt) {
             // A refusal is a result: the report says so where the case stands.
             Ok(_) | Err(Error::EngineCannot { .. }) => {}
@@ -63,20 +57,20 @@ pub(super) fn run(args: &Args) -> Result<()> {
             warn(format_args!("{}: {warning}", case.scene.name));
         }
     }
-    let bar = progress(cases.len(), args.quiet);
-    let summaries = cases
-        .par_iter()
-        .map(|case| {
-            bar.set_message(case.scene.name.clone());
-            let comparison = side_by_side(case, &specs, dt)?;
-            let own = folder.folder(&case.scene.name)?;
-            let summary = write_comparison(&own, &comparison, Place::InReport)?;
-            bar.inc(1);
-            Ok(summary)
-        })
-        .collect::<Result<Vec<_>>>()?;
-    bar.finish_and_clear();
-    write_index(&folder, &summaries, &specs, dt)?;
+    for study in asked {
+        study.make(&Order {
+            scenes: &scenes,
+            engines: args.engines.are_named().then_some(&specs[..]),
+            report: &folder,
+            quiet: args.quiet,
+        })?;
+    }
+    let (studies, complaints) = Studies::read(&folder);
+    for complaint in complaints {
+        warn(complaint);
+    }
+    let summaries = compare(args, &cases, &specs, &folder, &studies)?;
+    write_index(&folder, &summaries, &specs, dt, &studies)?;
     for summary in &summaries {
         for voice in summary
             .voices
@@ -98,6 +92,46 @@ pub(super) fn run(args: &Args) -> Result<()> {
         counted(specs.len(), "engine"),
         folder.path().join("README.md").display()
     ))
+}
+
+/// The cases asked for, or all of them.
+fn cases(args: &Args) -> Result<Vec<Case>> {
+    let library = args.library.library();
+    let mut names = if args.cases.is_empty() {
+        library.names()?
+    } else {
+        args.cases.clone()
+    };
+    names.sort();
+    names.dedup();
+    let cases = names.iter().map(|name| case::case(name, &library));
+    let cases = cases.collect::<Result<Vec<Case>>>()?;
+    if cases.is_empty() {
+        return Err(Error::NoCases);
+    }
+    Ok(cases)
+}
+
+/// Runs every case on every engine and writes its folder.
+fn compare(
+    args: &Args,
+    cases: &[Case],
+    specs: &[EngineSpec],
+    folder: &Folder,
+    studies: &Studies,
+) -> Result<Vec<Summary>> {
+    let bar = progress(cases.len(), args.quiet);
+    let compared = cases.par_iter().map(|case| {
+        bar.set_message(case.scene.name.clone());
+        let comparison = side_by_side(case, specs, args.engines.dt)?;
+        let own = folder.folder(&case.scene.name)?;
+        let summary = write_comparison(&own, &comparison, Place::InReport(studies))?;
+        bar.inc(1);
+        Ok(summary)
+    });
+    let summaries = compared.collect::<Result<Vec<_>>>()?;
+    bar.finish_and_clear();
+    Ok(summaries)
 }
 
 fn counted(count: usize, what: &str) -> String {

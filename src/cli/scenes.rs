@@ -6,7 +6,7 @@ use clap::Subcommand;
 
 use super::args::LibraryArgs;
 use super::output::say;
-use crate::case::Evidence;
+use crate::case::{Evidence, Library, scene_text};
 use crate::error::{Error, Result};
 use crate::report::Folder;
 use crate::scene::generate::{Cluster, Gas, Rack};
@@ -27,6 +27,9 @@ enum What {
     List {
         #[command(flatten)]
         library: LibraryArgs,
+        /// List the hard cases instead
+        #[arg(long, conflicts_with = "reference")]
+        hard: bool,
         /// Print JSON
         #[arg(long)]
         json: bool,
@@ -100,6 +103,9 @@ enum Recipe {
         /// Lattice cells an edge; 4 spheres a cell
         #[arg(long, default_value_t = Gas::default().cells)]
         cells: usize,
+        /// Number of spheres; they thin out the smallest lattice that has so many places
+        #[arg(long, conflicts_with = "cells")]
+        count: Option<usize>,
         /// Filling fraction
         #[arg(long, default_value_t = Gas::default().filling)]
         filling: f64,
@@ -113,8 +119,11 @@ enum Recipe {
 
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.what {
-        What::List { library, json } => list(library, *json),
-        What::Show { case, library } => say(library.library().scene_text(case)?.trim_end()),
+        What::List {
+            hard: true, json, ..
+        } => list(&Library::hard(), *json),
+        What::List { library, json, .. } => list(&library.library(), *json),
+        What::Show { case, library } => say(scene_text(case, &library.library())?.trim_end()),
         What::New { name, out } => {
             let text = STARTER.replacen("my-scene", name, 1);
             parse(&text, "the new scene")?;
@@ -141,8 +150,7 @@ struct Listed {
     truth: Option<Evidence>,
 }
 
-fn list(library: &LibraryArgs, json: bool) -> Result<()> {
-    let library = library.library();
+fn list(library: &Library, json: bool) -> Result<()> {
     let listed = library
         .names()?
         .into_iter()
@@ -209,18 +217,22 @@ fn generate(recipe: &Recipe) -> Result<()> {
         }
         Recipe::Gas {
             cells,
+            count,
             filling,
             seed,
             out,
-        } => (
-            Gas {
+        } => {
+            let recipe = Gas {
                 cells: *cells,
                 filling: *filling,
                 seed: *seed,
-            }
-            .scene()?,
-            out,
-        ),
+            };
+            let scene = match count {
+                Some(count) => Gas::thinned(*count, *filling, *seed)?,
+                None => recipe.scene()?,
+            };
+            (scene, out)
+        }
     };
     let text = to_toml(&scene)?;
     let Some(file) = &out.out else {

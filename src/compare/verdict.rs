@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Divergence, EventAgreement, Sizes};
+use super::{Divergence, EventAgreement, Limit, Sizes};
 use crate::recording::Recording;
 
 /// An engine counts as right while it stays within this share of the scene's size of the
@@ -28,6 +28,9 @@ pub struct Verdict {
     pub stopped_at_s: Option<f64>,
     /// Until when the reference vouches for its positions, s; later nobody is called wrong.
     pub comparable_until_s: f64,
+    /// What is left of the error as the step goes to 0, where a study of cost has told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Limit>,
 }
 
 impl Verdict {
@@ -53,6 +56,7 @@ impl Verdict {
             stopped_at_s: (engine.sample_count() < reference.sample_count())
                 .then(|| divergence.samples[divergence.samples.len() - 1].time),
             comparable_until_s,
+            limit: None,
         }
     }
 

@@ -156,3 +156,28 @@ pub fn versions() -> BTreeMap<&'static str, &'static str> {
         ("rapier3d", rapier::VERSION),
     ])
 }
+
+/// The build, in a word for tables: what makes the same engines faster or slower.
+///
+/// `default`, or the features of Rapier's crates that are on, `parallel` and `simd8`; then what
+/// the processor is told to be able to do beyond its family's least, and `debug` for a build
+/// without full optimisation. All engines of a program are of the same build.
+#[must_use]
+pub fn build() -> String {
+    let marks = [
+        ("parallel", cfg!(feature = "rapier-parallel")),
+        ("simd8", cfg!(feature = "rapier-simd8")),
+        ("avx2", cfg!(target_feature = "avx2")),
+        ("avx512", cfg!(target_feature = "avx512f")),
+        ("debug", cfg!(debug_assertions)),
+    ];
+    let on: Vec<_> = marks
+        .iter()
+        .filter_map(|(mark, on)| on.then_some(*mark))
+        .collect();
+    if on.is_empty() {
+        "default".to_owned()
+    } else {
+        on.join("+")
+    }
+}

@@ -35,6 +35,19 @@ pub struct Work {
     pub force_evaluations: u64,
 }
 
+impl std::ops::Sub for Work {
+    type Output = Self;
+
+    /// The work since an earlier count of the same simulation.
+    fn sub(self, earlier: Self) -> Self {
+        Self {
+            steps: self.steps - earlier.steps,
+            pair_tests: self.pair_tests - earlier.pair_tests,
+            force_evaluations: self.force_evaluations - earlier.force_evaluations,
+        }
+    }
+}
+
 /// One run of one engine on one scene, or independent evidence of the same shape.
 ///
 /// Sample n stands at `scene.sample_time(n)`; the recording ends with the last finite sample.

@@ -66,7 +66,8 @@ impl fmt::Display for CollapseReason {
 
 impl Outcome {
     /// The end of a recording at a sample with states that are no longer finite, if any is.
-    pub(super) fn blown_up(states: &[BodyState], time: f64) -> Option<Self> {
+    #[must_use]
+    pub fn blown_up(states: &[BodyState], time: f64) -> Option<Self> {
         let lost = states.iter().position(|state| !state.is_finite());
         lost.map(|body| Self::NonFinite { time, body })
     }

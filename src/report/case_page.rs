@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::format::{code, whole_percent};
+use super::studies::CaseStudies;
 use super::template::fill;
-use super::{engineering, percent};
+use super::{engineering, limits, percent};
 use crate::case::TRUTH;
 use crate::compare::{ClusterFacts, RIGHT_WITHIN, TOUCHING, Verdict};
 use crate::error::Result;
@@ -21,7 +22,8 @@ struct Page<'a> {
     size: String,
     findings: Vec<String>,
     verdicts: Vec<String>,
-    in_report: bool,
+    /// None for a page that stands alone.
+    studies: Option<CaseStudies>,
     pictures: &'a [&'a str],
     shown: String,
     voices: Vec<VoiceRow>,
@@ -84,12 +86,12 @@ struct Settings {
     notes: Vec<String>,
 }
 
-/// The page as Markdown.
+/// The page as Markdown; `studies` are those of the report that it stands in.
 pub(super) fn case_page(
     summary: &Summary,
     pictures: &[&str],
     shown: &[&str],
-    in_report: bool,
+    studies: Option<CaseStudies>,
 ) -> Result<String> {
     let unit = summary.length_unit.symbol();
     let page = Page {
@@ -101,7 +103,7 @@ pub(super) fn case_page(
             .map(|(who, what)| format!("**{who}** {what}"))
             .collect(),
         verdicts: verdicts(summary),
-        in_report,
+        studies,
         pictures,
         shown: shown.join(", "),
         voices: summary
@@ -203,7 +205,7 @@ fn verdicts(summary: &Summary) -> Vec<String> {
                 .stopped_at_s
                 .map(|time| format!("stopped at {} s", engineering(time))),
         );
-        if off.is_empty() {
+        let stands = if off.is_empty() {
             format!("{} stays within {error}.", code(&verdict.engine))
         } else {
             let off = off.join(", ");
@@ -211,6 +213,10 @@ fn verdicts(summary: &Summary) -> Vec<String> {
                 "{} leaves it: {off}; at most {error}.",
                 code(&verdict.engine)
             )
+        };
+        match &verdict.limit {
+            Some(limit) => format!("{stands} {}", limits::sentence(limit, unit)),
+            None => stands,
         }
     };
     let engines = summary.verdicts.iter().map(sentence);
@@ -373,8 +379,10 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
 mod tests {
     use super::*;
     use crate::case::Library;
+    use crate::compare::{Limit, Remainder};
     use crate::engine::{DEFAULT_DT, engine};
     use crate::recording::Recording;
+    use crate::study::cost::EngineLimit;
     use crate::study::side_by_side;
 
     /// The page of a case on the lecture's engine, with this truth if any.
@@ -384,7 +392,7 @@ mod tests {
             case.truth = Some(truth(&case.scene));
         }
         let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
-        case_page(&Summary::of(&comparison), &[], &["lecture"], false).unwrap()
+        case_page(&Summary::of(&comparison), &[], &["lecture"], None).unwrap()
     }
 
     /// The cells of the table that has this in its first row: `[row][cell]`, without the rule.
@@ -406,6 +414,28 @@ mod tests {
         let names: Vec<_> = rows.iter().map(|row| row[1].as_str()).collect();
         assert_eq!(names, ["voice", "truth (reference)", "lecture"]);
         assert_eq!(rows[1][2..], rows[2][2..]);
+    }
+
+    #[test]
+    fn a_verdict_says_what_kind_of_error_it_is_about() {
+        let case = Library::Embedded.case("headon-equal").unwrap();
+        let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
+        let mut summary = Summary::of(&comparison);
+        let limit = Limit {
+            kind: Remainder::Discretisation,
+            stays: None,
+            slope: Some(1.0),
+            finest: 1e-3,
+            floor: 1e-12,
+        };
+        let page = |summary: &Summary| case_page(summary, &[], &["lecture"], None).unwrap();
+        assert!(!page(&summary).contains("The error is"));
+        summary.tell_limits(&[EngineLimit {
+            engine: "lecture".into(),
+            limit: Some(limit),
+        }]);
+        let told = "of the size). The error is *discretisation*: it shrinks with the step";
+        assert!(page(&summary).contains(told), "{}", page(&summary));
     }
 
     /// An oblique impact that is seen late has another line of centres, so another impulse.

@@ -6,11 +6,11 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::case_page::with_unit;
-use super::format::code;
+use super::format::{aligned, code};
 use super::template::fill;
 use super::{Folder, engineering};
 use crate::error::Result;
-use crate::study::{Change, Effect, EffectRow, EffectStudy};
+use crate::study::{Change, Effect, EffectRow, EffectStudy, PAIRS_MIN, ROUNDS_MIN};
 
 const TEMPLATE: &str = include_str!("../../templates/effects.md");
 
@@ -18,6 +18,8 @@ const TEMPLATE: &str = include_str!("../../templates/effects.md");
 #[derive(Serialize)]
 struct Page<'a> {
     study: &'a EffectStudy,
+    rounds_min: usize,
+    pairs_min: usize,
     findings: Vec<String>,
     dt: String,
     header: [&'static str; 10],
@@ -53,6 +55,8 @@ pub fn write_effects(folder: &Folder, study: &EffectStudy) -> Result<()> {
     };
     let page = Page {
         study,
+        rounds_min: ROUNDS_MIN,
+        pairs_min: PAIRS_MIN,
         findings: effects_findings(study),
         dt: engineering(study.dt_s),
         header: HEADER,
@@ -94,9 +98,6 @@ pub fn effects_findings(study: &EffectStudy) -> Vec<String> {
     findings
 }
 
-/// Below so many repetitions not even the least and the largest hold a median in 95 % of cases.
-const REPETITIONS_TELLING: usize = 6;
-
 /// The declared effect without which an engine is cheapest, where that is beyond chance.
 fn dearest(study: &EffectStudy, engine: &str) -> Option<String> {
     let off = study
@@ -104,8 +105,7 @@ fn dearest(study: &EffectStudy, engine: &str) -> Option<String> {
         .iter()
         .filter(|row| row.engine == engine && row.change == Change::Off);
     let priced = off.filter_map(|row| Some((row.effect?, row.price?)));
-    let saving = priced
-        .filter(|(_, price)| price.ratio_high < 1.0 && price.repetitions >= REPETITIONS_TELLING);
+    let saving = priced.filter(|(_, price)| price.ratio_high.is_some_and(|high| high < 1.0));
     let (effect, price) = saving.min_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio))?;
     Some(format!(
         "On {engine} `{}` costs most: without it a simulated second takes {} of the time.",
@@ -166,20 +166,16 @@ fn cells(study: &EffectStudy, row: &EffectRow) -> [String; 10] {
         },
         row.impacts.map_or_else(nothing, |count| count.to_string()),
         difference.map_or_else(nothing, |difference| {
-            format!(
-                "-{}, +{}",
-                difference.impacts_lost, difference.impacts_gained
-            )
+            match (difference.impacts_lost, difference.impacts_gained) {
+                (0, 0) => "none".to_owned(),
+                (lost, gained) => format!("-{lost}, +{gained}"),
+            }
         }),
         price.map_or_else(nothing, |price| engineering(price.median_ms_per_sim_s)),
         price.map_or_else(nothing, |price| engineering(price.ratio)),
-        price.map_or_else(nothing, |price| {
-            format!(
-                "{} to {}",
-                engineering(price.ratio_low),
-                engineering(price.ratio_high)
-            )
-        }),
+        price
+            .and_then(|price| Some([price.ratio_low?, price.ratio_high?]))
+            .map_or_else(nothing, |ends| ends.map(engineering).join(" to ")),
         row.work.map_or_else(nothing, |work| {
             format!(
                 "{}, {}, {}",
@@ -194,20 +190,8 @@ fn cells(study: &EffectStudy, row: &EffectRow) -> [String; 10] {
 pub fn effects_table(study: &EffectStudy) -> String {
     let header = HEADER.map(str::to_owned);
     let rows = study.rows.iter().map(|row| cells(study, row));
-    let rows: Vec<_> = std::iter::once(header).chain(rows).collect();
-    let width = |column: usize| {
-        let widths = rows.iter().map(|row| row[column].chars().count());
-        widths.max().unwrap_or(0)
-    };
-    let widths: Vec<_> = (0..HEADER.len()).map(width).collect();
-    let line = |row: &[String; 10]| {
-        let cells = row.iter().zip(&widths);
-        let padded: Vec<_> = cells
-            .map(|(cell, width)| format!("{cell:width$}"))
-            .collect();
-        padded.join("  ").trim_end().to_owned()
-    };
-    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+    let rows = std::iter::once(header).chain(rows).map(Vec::from);
+    aligned(&rows.collect::<Vec<_>>())
 }
 
 /// A row of `effects.csv`; the names of the fields are the header.
@@ -244,8 +228,8 @@ fn write_table(study: &EffectStudy, out: &mut dyn Write) -> io::Result<()> {
             impacts: row.impacts,
             cost_ms_per_sim_s: row.price.and_then(|p| finite(p.median_ms_per_sim_s)),
             cost_ratio: row.price.and_then(|p| finite(p.ratio)),
-            ratio_low: row.price.and_then(|p| finite(p.ratio_low)),
-            ratio_high: row.price.and_then(|p| finite(p.ratio_high)),
+            ratio_low: row.price.and_then(|p| finite(p.ratio_low?)),
+            ratio_high: row.price.and_then(|p| finite(p.ratio_high?)),
             outcome: row.outcome,
         })?;
     }

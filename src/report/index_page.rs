@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::case_page::with_unit;
-use super::format::whole_percent;
+use super::format::{code, whole_percent};
 use super::output::write_json;
+use super::studies::StudyNote;
 use super::template::fill;
-use super::{Folder, engineering, percent};
+use super::{Folder, Studies, engineering, percent};
 use crate::case::{Evidence, TRUTH};
-use crate::compare::RIGHT_WITHIN;
+use crate::compare::{RIGHT_WITHIN, Remainder};
 use crate::engine::EngineSpec;
 use crate::error::Result;
 use crate::study::{PairSummary, Summary, VoiceSummary, median};
@@ -30,6 +31,9 @@ struct Page<'a> {
     engines: Vec<EngineRow>,
     rows: Vec<Row>,
     reference_rows: Vec<ReferenceRow>,
+    /// Whether a study of cost has told what kinds of error there are.
+    told: bool,
+    studies: Vec<StudyNote>,
     versions: BTreeMap<&'static str, &'static str>,
     dt: String,
     cases: usize,
@@ -89,8 +93,9 @@ pub fn write_index(
     summaries: &[Summary],
     engines: &[EngineSpec],
     dt: f64,
+    studies: &Studies,
 ) -> Result<()> {
-    let page = index_page(summaries, engines, dt)?;
+    let page = index_page(summaries, engines, dt, studies)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
     let everything = Everything {
         versions: crate::engine::versions(),
@@ -105,7 +110,12 @@ pub fn write_index(
 ///
 /// # Errors
 /// A fault of the template.
-pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Result<String> {
+pub fn index_page(
+    summaries: &[Summary],
+    engines: &[EngineSpec],
+    dt: f64,
+    studies: &Studies,
+) -> Result<String> {
     let name = |place: usize| engines.get(place).map_or("", |spec| spec.name.as_str());
     let (first, second) = (name(0), name(1));
     let telling = most_telling(summaries, first, second);
@@ -135,6 +145,8 @@ pub fn index_page(summaries: &[Summary], engines: &[EngineSpec], dt: f64) -> Res
             .iter()
             .filter_map(|summary| reference_row(summary, engines))
             .collect(),
+        told: remainders(summaries, engines).is_some(),
+        studies: studies.notes(),
         versions: crate::engine::versions(),
         dt: engineering(dt),
         cases: summaries.len(),
@@ -204,6 +216,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
     }
     sentences.extend(energy_drifts(summaries, engines));
     sentences.extend(verdicts(summaries, engines));
+    sentences.extend(remainders(summaries, engines));
     let unfinished: Vec<_> = summaries
         .iter()
         .flat_map(|summary| summary.voices.iter().map(move |voice| (summary, voice)))
@@ -321,6 +334,27 @@ fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
     (!rows.is_empty()).then_some(said)
 }
 
+/// How often each engine's error is of which kind, where a study of cost has told.
+fn remainders(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
+    let of_engine = |spec: &EngineSpec| {
+        let all = summaries.iter().flat_map(|summary| &summary.verdicts);
+        let own = all.filter(|verdict| verdict.engine == spec.name);
+        let limits: Vec<_> = own.filter_map(|verdict| verdict.limit).collect();
+        let count = |kind: Remainder| limits.iter().filter(|limit| limit.kind == kind).count();
+        let kinds = Remainder::ALL.into_iter().filter(|kind| count(*kind) > 0);
+        let told: Vec<_> = kinds
+            .map(|kind| format!("*{}* in {}", kind.word(), count(kind)))
+            .collect();
+        (!told.is_empty()).then(|| format!("{} {}", code(&spec.name), told.join(", ")))
+    };
+    let rows: Vec<_> = engines.iter().filter_map(of_engine).collect();
+    let said = format!(
+        "What is left of the error as the step goes to 0 is: {}.",
+        rows.join("; ")
+    );
+    (!rows.is_empty()).then_some(said)
+}
+
 fn row(summary: &Summary, first: &str, second: &str) -> Row {
     let unit = summary.length_unit.symbol();
     let voice = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
@@ -380,15 +414,63 @@ fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceR
         } else {
             TRUTH
         };
-        let pair = summary.pair(&spec.name, against);
-        pair.map_or_else(
-            || "–".to_owned(),
-            |pair| with_unit(pair.position_divergence_max, unit),
-        )
+        let Some(pair) = summary.pair(&spec.name, against) else {
+            return "–".to_owned();
+        };
+        let error = with_unit(pair.position_divergence_max, unit);
+        let mut verdicts = summary.verdicts.iter();
+        let own = verdicts.find(|verdict| verdict.engine == spec.name);
+        match own.and_then(|verdict| verdict.limit) {
+            Some(limit) => format!("{error}, *{}*", limit.kind.word()),
+            None => error,
+        }
     };
     Some(ReferenceRow {
         scene: summary.scene.clone(),
         reference: reference.clone(),
         errors: engines.iter().map(cell).collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Library;
+    use crate::compare::Limit;
+    use crate::engine::{DEFAULT_DT, engine};
+    use crate::study::cost::EngineLimit;
+    use crate::study::side_by_side;
+
+    #[test]
+    fn the_index_counts_the_kinds_of_error_and_names_each() {
+        let engines = [engine("lecture").unwrap(), engine("exact-fast").unwrap()];
+        let summary = |case: &str| {
+            let case = Library::Embedded.case(case).unwrap();
+            Summary::of(&side_by_side(&case, &engines, DEFAULT_DT).unwrap())
+        };
+        let mut summaries = [summary("headon-equal"), summary("kepler-circle")];
+        let page = |summaries: &[Summary]| {
+            index_page(summaries, &engines, DEFAULT_DT, &Studies::default()).unwrap()
+        };
+        assert!(!page(&summaries).contains("What is left of the error"));
+        summaries[1].tell_limits(&[EngineLimit {
+            engine: "lecture".into(),
+            limit: Some(Limit {
+                kind: Remainder::Discretisation,
+                stays: None,
+                slope: Some(1.0),
+                finest: 1e-3,
+                floor: 1e-12,
+            }),
+        }]);
+        let page = page(&summaries);
+        assert!(
+            page.contains("as the step goes to 0 is: `lecture` *discretisation* in 1."),
+            "{page}"
+        );
+        let cells = page
+            .lines()
+            .filter(|line| line.contains(", *discretisation* |"));
+        assert_eq!(cells.count(), 1, "{page}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Results in, bytes out: tables, pictures, pages. One manager owns the files.
 
+mod bodies;
 mod case_page;
 #[cfg(feature = "plots")]
 pub mod chart;
@@ -8,16 +9,21 @@ mod effects_page;
 mod files;
 mod format;
 mod index_page;
+mod limits;
 mod output;
+mod overhead;
 #[cfg(feature = "plots")]
 mod pictures;
+mod studies;
 mod tables;
 mod template;
 
+pub use bodies::{bodies_findings, bodies_table, write_bodies};
 pub use case_page::findings;
-pub use cost::{CostReport, write_cost};
+pub use cost::CostReport;
 pub use effects_page::{effects_findings, effects_table, write_effects};
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};
 pub use index_page::{index_page, write_index};
 pub use output::{Place, write_comparison};
+pub use studies::{COST, Studies};

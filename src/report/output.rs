@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use super::Folder;
 use super::case_page::case_page;
 use super::tables::{write_divergence, write_metrics};
+use super::{Folder, Studies};
 use crate::error::Result;
 use crate::recording::{write_events, write_trajectory};
 use crate::study::{SideBySide, Summary, Voice};
@@ -24,12 +24,12 @@ fn pictured(comparison: &SideBySide) -> Vec<&Voice> {
 }
 
 /// Where a comparison's page stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+#[derive(Debug, Clone, Copy)]
+pub enum Place<'a> {
     /// In a folder of its own.
     Alone,
-    /// In a report, with the index one folder up.
-    InReport,
+    /// In a report, with the index one folder up and these studies beside it.
+    InReport(&'a Studies),
 }
 
 /// Whether a file in a comparison's folder tells of an engine that may not run this time, or
@@ -47,7 +47,10 @@ fn is_stale(name: &str) -> bool {
 /// A file that cannot be written, with its name; each file is whole or not there.
 pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) -> Result<Summary> {
     let scene = &comparison.scene;
-    let summary = Summary::of(comparison);
+    let mut summary = Summary::of(comparison);
+    if let Place::InReport(studies) = place {
+        summary.tell_limits(studies.limits(scene));
+    }
     folder.remove(is_stale)?;
     for voice in &comparison.voices {
         let name = voice.name();
@@ -70,7 +73,11 @@ pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) 
     }
     let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
     let shown: Vec<_> = voices.iter().map(|voice| voice.name()).collect();
-    let page = case_page(&summary, &names, &shown, place == Place::InReport)?;
+    let studies = match place {
+        Place::Alone => None,
+        Place::InReport(studies) => Some(studies.of_case(scene)),
+    };
+    let page = case_page(&summary, &names, &shown, studies)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
     folder.write("summary.json", |out| write_json(out, &summary))?;
     Ok(summary)

@@ -3,6 +3,9 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use super::fault::{
+    Fault, FieldPath, fault, finite, finite_vector, fraction, not_negative, positive,
+};
 use super::overlap::overlaps;
 use super::{Effects, Scene, Spring};
 use crate::error::{Error, Result};
@@ -12,61 +15,6 @@ const STATES_MAX: f64 = 4e7;
 
 /// Characters in a name, at most.
 const NAME_MAX: usize = 200;
-
-/// One step from the root of a scene file to a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PathStep {
-    /// A key of a table.
-    Key(&'static str),
-    /// A place in an array, counted from 0.
-    Index(usize),
-}
-
-/// Where in a scene a field stands, such as `bodies[2].mass`.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct FieldPath(pub Vec<PathStep>);
-
-impl FieldPath {
-    fn key(mut self, key: &'static str) -> Self {
-        self.0.push(PathStep::Key(key));
-        self
-    }
-
-    fn index(mut self, index: usize) -> Self {
-        self.0.push(PathStep::Index(index));
-        self
-    }
-}
-
-impl fmt::Display for FieldPath {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (place, step) in self.0.iter().enumerate() {
-            match step {
-                PathStep::Key(key) if place == 0 => write!(f, "{key}")?,
-                PathStep::Key(key) => write!(f, ".{key}")?,
-                PathStep::Index(index) => write!(f, "[{index}]")?,
-            }
-        }
-        Ok(())
-    }
-}
-
-/// What is wrong with a scene: the field, what was found, and what would be right.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    /// The field.
-    pub path: FieldPath,
-    /// What was found there.
-    pub found: String,
-    /// What would be right.
-    pub remedy: String,
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}` is {}: {}", self.path, self.found, self.remedy)
-    }
-}
 
 /// Something allowed that the user should know of.
 #[derive(Debug, Clone, PartialEq)]
@@ -348,66 +296,4 @@ fn is_invisible(c: char) -> bool {
 
 fn printable(text: &str) -> String {
     text.escape_debug().to_string()
-}
-
-fn fault(path: FieldPath, found: impl Into<String>, remedy: impl Into<String>) -> Fault {
-    Fault {
-        path,
-        found: found.into(),
-        remedy: remedy.into(),
-    }
-}
-
-fn finite(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give a finite number",
-    ))
-}
-
-fn positive(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
-    finite(path, value)?;
-    if value > 0.0 {
-        return Ok(());
-    }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give a number above 0",
-    ))
-}
-
-fn not_negative(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
-    finite(path, value)?;
-    if value >= 0.0 {
-        return Ok(());
-    }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give 0 or a number above it",
-    ))
-}
-
-fn fraction(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
-    finite(path, value)?;
-    if (0.0..=1.0).contains(&value) {
-        return Ok(());
-    }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give a number from 0 to 1",
-    ))
-}
-
-fn finite_vector(path: &FieldPath, vector: &[f64; 3]) -> std::result::Result<(), Fault> {
-    for (axis, value) in vector.iter().enumerate() {
-        finite(&path.clone().index(axis), *value)?;
-    }
-    Ok(())
 }

@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use serde::de::Error as _;
+use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{FieldPath, PathStep, Scene};
+use super::{Fault, FieldPath, PathStep, Scene};
 use crate::error::{Error, Result};
 
 /// Reads and checks a scene file.
 ///
 /// # Errors
-/// [`Error::Read`], [`Error::NotUtf8`], or [`Error::SceneFile`] with line, column and remedy.
+/// [`Error::Read`], [`Error::NotUtf8`], or [`Error::DataFile`] with line, column and remedy.
 pub fn read(path: &Path) -> Result<Scene> {
     let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
     let file = path.display().to_string();
@@ -27,25 +27,35 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// Parses and checks the text of a scene file; `file` is its name in messages.
 ///
 /// # Errors
-/// [`Error::SceneFile`] with line, column and remedy, for meaning as for syntax.
+/// [`Error::DataFile`] with line, column and remedy, for meaning as for syntax.
 pub fn parse(text: &str, file: &str) -> Result<Scene> {
+    parse_checked(text, file, Scene::check)
+}
+
+/// Parses the text of a file of data and checks what it means.
+///
+/// # Errors
+/// As [`parse`].
+pub(crate) fn parse_checked<T: DeserializeOwned>(
+    text: &str,
+    file: &str,
+    check: impl FnOnce(&T) -> std::result::Result<(), Fault>,
+) -> Result<T> {
     let complaint = |byte: usize, message: String| {
         let (line, column) = line_and_column(text, byte);
-        Error::SceneFile {
+        Error::DataFile {
             file: file.to_owned(),
             line,
             column,
             message,
         }
     };
-    let scene: Scene = toml::from_str(text).map_err(|wrong| {
+    let data: T = toml::from_str(text).map_err(|wrong| {
         let byte = wrong.span().map_or(0, |span| span.start);
         complaint(byte, in_plain_words(wrong.message()))
     })?;
-    scene
-        .check()
-        .map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
-    Ok(scene)
+    check(&data).map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
+    Ok(data)
 }
 
 /// Writes a scene as the text of a scene file; [`parse`] gives the same scene back.
@@ -64,7 +74,7 @@ pub fn to_toml(scene: &Scene) -> Result<String> {
 ///
 /// # Errors
 /// Those of the deserializer, or another number of values.
-pub(super) fn exactly<'de, D, T, const N: usize>(
+pub(crate) fn exactly<'de, D, T, const N: usize>(
     deserializer: D,
 ) -> std::result::Result<[T; N], D::Error>
 where

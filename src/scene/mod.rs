@@ -2,13 +2,16 @@
 
 mod check;
 mod effects;
+pub(crate) mod fault;
 mod file;
 pub mod generate;
 pub mod overlap;
 mod units;
 
-pub use check::{Fault, FieldPath, PathStep, SceneWarning};
+pub use check::SceneWarning;
 pub use effects::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Spring};
+pub use fault::{Fault, FieldPath, PathStep};
+pub(crate) use file::{exactly, parse_checked};
 pub use file::{parse, read, to_toml};
 pub use units::{LengthUnit, Units};
 

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::price::{Candidate, Price, prices};
+use super::median::median;
+use super::stopwatch::{Job, Price, Timing, paired, paired_ratio, prices};
 use crate::compare::Divergence;
 use crate::engine::{EngineSpec, record};
 use crate::error::{Error, Result};
@@ -224,7 +225,38 @@ pub struct EffectRow {
     /// Counted work of the run.
     pub work: Option<Work>,
     /// What a simulated second costs.
-    pub price: Option<Price>,
+    pub price: Option<EffectPrice>,
+}
+
+/// The cost of a simulated second, and how it stands to that of the unchanged scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EffectPrice {
+    /// Median over the repetitions, ms.
+    pub median_ms_per_sim_s: f64,
+    /// Least of the repetitions, ms.
+    pub min_ms_per_sim_s: f64,
+    /// Median over the repetitions of this cost over that of the unchanged scene beside it.
+    pub ratio: f64,
+    /// Lower end of the 95 % interval of that median; none with too few repetitions.
+    pub ratio_low: Option<f64>,
+    /// Upper end of it.
+    pub ratio_high: Option<f64>,
+    /// Repetitions that were timed.
+    pub repetitions: usize,
+}
+
+impl EffectPrice {
+    fn new(own: &Price, unchanged: &Price, seed: u64) -> Self {
+        let interval = paired_ratio(&own.rounds, &unchanged.rounds, seed);
+        Self {
+            median_ms_per_sim_s: own.median,
+            min_ms_per_sim_s: own.min,
+            ratio: median(&paired(&own.rounds, &unchanged.rounds)),
+            ratio_low: interval.map(|ratio| ratio.low),
+            ratio_high: interval.map(|ratio| ratio.high),
+            repetitions: own.rounds.len(),
+        }
+    }
 }
 
 /// What each effect of a scene costs and changes, on every engine asked for.
@@ -240,6 +272,8 @@ pub struct EffectStudy {
     pub dt_s: f64,
     /// Repetitions asked for.
     pub repetitions: usize,
+    /// Seed of the order of runs and of the intervals.
+    pub seed: u64,
     /// For each engine the scene as it stands, then every effect that can be switched.
     pub rows: Vec<EffectRow>,
 }
@@ -284,7 +318,7 @@ impl EffectStudy {
 }
 
 /// Switches each effect of a scene, one at a time, on each engine; records what changes, and
-/// times `advance_to` without recording, so many repetitions in turn.
+/// times `advance_to` without recording.
 ///
 /// # Errors
 /// As [`record`], but an engine that refuses a scene or blows up is a result, not an error.
@@ -292,18 +326,19 @@ pub fn effects(
     scene: &Scene,
     specs: &[EngineSpec],
     dt: f64,
-    repetitions: usize,
+    timing: Timing,
 ) -> Result<EffectStudy> {
     let mut rows = Vec::new();
     for spec in specs {
-        rows.extend(on_engine(scene, spec, dt, repetitions)?);
+        rows.extend(on_engine(scene, spec, dt, timing)?);
     }
     Ok(EffectStudy {
         scene: scene.name.clone(),
         title: scene.heading().to_owned(),
         length_unit: scene.units.length,
         dt_s: dt,
-        repetitions,
+        repetitions: timing.repetitions,
+        seed: timing.seed,
         rows,
     })
 }
@@ -348,7 +383,12 @@ impl Variant {
         }
     }
 
-    fn ran(&self, recording: &Recording, unchanged: &Recording, price: Option<Price>) -> EffectRow {
+    fn ran(
+        &self,
+        recording: &Recording,
+        unchanged: &Recording,
+        price: Option<EffectPrice>,
+    ) -> EffectRow {
         let counts = recording.events.counts();
         let difference = || Difference::between(&self.scene, unchanged, recording);
         EffectRow {
@@ -365,12 +405,7 @@ impl Variant {
     }
 }
 
-fn on_engine(
-    scene: &Scene,
-    spec: &EngineSpec,
-    dt: f64,
-    repetitions: usize,
-) -> Result<Vec<EffectRow>> {
+fn on_engine(scene: &Scene, spec: &EngineSpec, dt: f64, timing: Timing) -> Result<Vec<EffectRow>> {
     let variants = Variant::all(scene);
     let runs: Vec<_> = variants
         .par_iter()
@@ -389,21 +424,39 @@ fn on_engine(
         // Nothing to hold the others against.
         Err(refusal) => return Ok(vec![variants[0].refused(&spec.name, refusal)]),
     };
-    let candidates = variants.iter().zip(&recorded).map(|(variant, run)| {
-        // Timed as far as the recording goes: past it the numbers mean nothing.
-        let samples = run
-            .as_ref()
-            .map_or(0, |recording| recording.sample_count() - 1);
-        Candidate {
-            scene: &variant.scene,
-            samples,
-        }
-    });
-    let prices = prices(&candidates.collect::<Vec<_>>(), spec, dt, repetitions)?;
+    let prices = priced(&variants, &recorded, spec, dt, timing)?;
     let rows = variants.iter().zip(&recorded).zip(prices);
     let row = |((variant, run), price): ((&Variant, &Result<Recording>), _)| match run {
         Ok(recording) => variant.ran(recording, &unchanged, price),
         Err(refusal) => variant.refused(&spec.name, refusal),
     };
     Ok(rows.map(row).collect())
+}
+
+/// The price of each variant that has a recording past its start, in their order.
+fn priced(
+    variants: &[Variant],
+    recorded: &[Result<Recording>],
+    spec: &EngineSpec,
+    dt: f64,
+    timing: Timing,
+) -> Result<Vec<Option<EffectPrice>>> {
+    // Timed as far as the recording goes: past it the numbers mean nothing.
+    let samples = |run: &Result<Recording>| run.as_ref().map_or(0, |run| run.sample_count() - 1);
+    let jobs = variants.iter().zip(recorded).map(|(variant, run)| Job {
+        scene: &variant.scene,
+        spec,
+        dt,
+        from: 0,
+        to: samples(run),
+    });
+    let is_timed: Vec<bool> = recorded.iter().map(|run| samples(run) > 0).collect();
+    let jobs: Vec<Job> = jobs.filter(|job| job.to > 0).collect();
+    let mut found = prices(&jobs, timing, &|_, _| {})?.into_iter();
+    let prices: Vec<Option<Price>> = is_timed
+        .into_iter()
+        .map(|timed| timed.then(|| found.next()).flatten())
+        .collect();
+    let against = |own: &Price| Some(EffectPrice::new(own, prices[0].as_ref()?, timing.seed));
+    Ok(prices.iter().map(|own| against(own.as_ref()?)).collect())
 }

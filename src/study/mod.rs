@@ -1,16 +1,23 @@
 //! The questions that need many runs.
 
+pub mod bodies;
+mod breaches;
 pub mod cost;
 mod effects;
 mod median;
-mod price;
+mod overhead;
 mod side_by_side;
+mod stopwatch;
 mod summary;
 mod tracks;
 
-pub use effects::{Change, Difference, Effect, EffectRow, EffectStudy, NeverFelt, effects};
+pub use breaches::{Breach, Excess, breaches};
+pub use effects::{
+    Change, Difference, Effect, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects,
+};
 pub use median::median;
-pub use price::Price;
+pub use overhead::Overhead;
 pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
+pub use stopwatch::{PAIRS_MIN, Price, ROUNDS_MIN, Ratio, Timing, paired_ratio};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};
 pub use tracks::{Track, track};

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::cost::EngineLimit;
 use super::{Refusal, SideBySide, Voice};
 use crate::case::Evidence;
 use crate::compare::{
@@ -190,6 +191,14 @@ impl Summary {
         }
     }
 
+    /// Tells each verdict what a study of cost on the same scene has found of its engine.
+    pub fn tell_limits(&mut self, limits: &[EngineLimit]) {
+        for verdict in &mut self.verdicts {
+            let told = limits.iter().find(|row| row.engine == verdict.engine);
+            verdict.limit = told.and_then(|row| row.limit);
+        }
+    }
+
     /// The figures of the pair, in either order.
     #[must_use]
     pub fn pair(&self, a: &str, b: &str) -> Option<&PairSummary> {
@@ -310,6 +319,7 @@ fn describe(scene: &Scene, event: &Event) -> String {
 mod tests {
     use super::*;
     use crate::case::Library;
+    use crate::compare::{Limit, Remainder};
     use crate::engine::{DEFAULT_DT, engine};
     use crate::recording::Recording;
     use crate::study::side_by_side;
@@ -335,6 +345,31 @@ mod tests {
             "{facts:?}"
         );
         assert_eq!(clusters("headon-equal", |_| None), [None]);
+    }
+
+    #[test]
+    fn a_verdict_is_told_the_limit_of_its_own_engine() {
+        let case = Library::Embedded.case("headon-equal").unwrap();
+        let comparison = side_by_side(&case, &[engine("lecture").unwrap()], DEFAULT_DT).unwrap();
+        let mut summary = Summary::of(&comparison);
+        let json =
+            |summary: &Summary| serde_json::to_value(summary).unwrap()["verdicts"][0].clone();
+        assert!(json(&summary).get("limit").is_none());
+        let limit = Limit {
+            kind: Remainder::Discretisation,
+            stays: None,
+            slope: Some(1.0),
+            finest: 0.5,
+            floor: 1e-12,
+        };
+        let of = |engine: &str| EngineLimit {
+            engine: engine.into(),
+            limit: Some(limit),
+        };
+        summary.tell_limits(&[of("verlet")]);
+        assert_eq!(summary.verdicts[0].limit, None);
+        summary.tell_limits(&[of("verlet"), of("lecture")]);
+        assert_eq!(json(&summary)["limit"]["kind"], "discretisation");
     }
 
     /// To its own end, the lecture's run has collapsed.

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-fn carom(folder: &Path, arguments: &[&str]) -> String {
+/// Runs carom in a folder and gives what it prints.
+pub fn carom(folder: &Path, arguments: &[&str]) -> String {
     let mut command = Command::cargo_bin("carom").unwrap();
     let output = command
         .current_dir(folder)
@@ -70,10 +71,11 @@ fn scenes_are_listed_shown_started_and_generated() {
             "out",
         ],
     );
-    let recipes: [&[&str]; 3] = [
+    let recipes: [&[&str]; 4] = [
         &["cluster", "--count", "8"],
         &["rack", "--jitter", "0.1"],
         &["gas", "--cells", "2"],
+        &["gas", "--count", "10", "--filling", "0.1"],
     ];
     for recipe in recipes {
         let make = |seed: &'static str| {
@@ -105,7 +107,8 @@ fn a_new_scene_never_replaces_a_file_unasked() {
     carom(scratch.path(), &["scenes", "new", "mine", "--force"]);
 }
 
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+/// Every file below a folder, by its path.
+pub fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -173,20 +176,30 @@ fn a_report_is_whole_and_the_same_every_time() {
             );
         }
     }
-    // Every link of every page leads to a file.
-    for (name, bytes) in &first {
-        if !name.ends_with(".md") {
-            continue;
-        }
+    assert_links(&first);
+}
+
+/// Every link of every page leads to a file; a place within a page stands in that page.
+pub fn assert_links(files: &[(String, Vec<u8>)]) {
+    for (name, bytes) in files.iter().filter(|(name, _)| name.ends_with(".md")) {
         let text = String::from_utf8(bytes.clone()).unwrap();
         let after = |mark| text.split(mark).skip(1);
         let links = after("](").chain(after("src=\""));
         for link in links.filter_map(|rest| rest.split([')', '"']).next()) {
-            let target = Path::new(name).parent().unwrap().join(link);
-            assert!(
-                link.starts_with("http") || target.exists(),
-                "{name}: {link}"
-            );
+            if link.starts_with("http") {
+                continue;
+            }
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => Path::new(name).to_owned(),
+                file => Path::new(name).parent().unwrap().join(file),
+            };
+            assert!(target.exists(), "{name}: {link}");
+            if !place.is_empty() {
+                let page = fs::read_to_string(&target).unwrap();
+                let anchor = format!("<a id=\"{place}\"></a>");
+                assert!(page.contains(&anchor), "{name}: {link}");
+            }
         }
     }
 }
@@ -248,7 +261,41 @@ fn the_study_of_cost_leaves_every_point_and_a_page() {
         assert_eq!(picture.exists(), cfg!(feature = "plots"));
     }
     assert!(orders.starts_with("scene,engine,error,order,low,high,stated_order,points\n"));
+    let read = |name: &str| fs::read_to_string(folder.join("a").join(name)).unwrap();
+    let phases = read("phases.csv");
+    assert!(phases.starts_with(
+        "scene,engine,shift_s,dt,position_error_rms,position_error_max,event_time_error,\
+         energy_error,local_error,outcome\n"
+    ));
+    // Every run of the lecture again, from seven later starts.
+    let of_lecture = |table: &str| {
+        table
+            .lines()
+            .filter(|line| line.contains(",lecture,"))
+            .count()
+    };
+    assert_eq!(of_lecture(&phases), 7 * of_lecture(&cost));
+    assert!(read("limits.csv").starts_with(
+        "scene,engine,kind,limit,limit_low,limit_high,slope,finest,floor\nheadon-equal,lecture,"
+    ));
+    let push_out = read("push-out.csv");
+    assert!(push_out.starts_with(
+        "scene,engine,without,dt,cost_ratio,cost_ratio_low,cost_ratio_high,position_error_max,\
+         position_error_max_without,energy_added,max_penetration,max_penetration_without\n"
+    ));
+    // Nothing meets in kepler-circle.
+    assert!(push_out.contains("headon-equal,lecture,lecture-in-place,"));
+    assert!(!push_out.contains("kepler-circle"));
+    assert!(page.contains("Push-out, priced separately"));
     assert!(page.contains("The price tag"));
+    // Two bodies, every step one pair: k = 1, 2, ... steps a sample, 32 samples a second.
+    let work = fs::read_to_string(folder.join("a/work.csv")).unwrap();
+    assert!(work.starts_with(
+        "scene,engine,setting,dt,steps_per_sim_s,force_evaluations_per_sim_s,pair_tests_per_sim_s\n"
+    ));
+    let row = work.lines().nth(1).unwrap();
+    assert_eq!(row, "headon-equal,lecture,stock,0.03125,32.0,0.0,32.0");
+    assert!(page.contains("fixed, ns a step"));
     // What is counted and computed is the same again; only prices differ.
     let counted = |table: &str| -> Vec<String> {
         let row = |line: &str| {
@@ -260,11 +307,91 @@ fn the_study_of_cost_leaves_every_point_and_a_page() {
     assert_eq!(counted(&cost), counted(&study("b").0));
 }
 
+/// Every engine has its row at every number of bodies; the rows of another build stand beside.
+#[test]
+fn cost_against_bodies_leaves_every_point_and_takes_in_other_builds() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let study = [
+        "cost",
+        "--bodies",
+        "30,4,10",
+        "--engine",
+        "lecture,exact-fast",
+    ];
+    let quick = ["--repetitions", "1", "--budget", "2000"];
+    let said = carom(folder, &[&study[..], &quick].concat());
+    assert!(
+        said.contains("bodies  4 ") && said.contains("over budget"),
+        "{said}"
+    );
+    let own = folder.join("runs/bodies");
+    let table = fs::read_to_string(own.join("bodies.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(
+        rows[0].join(","),
+        "build,engine,bodies,dt,filling,walls,seed,step_us,step_min_us,cost_ms_per_sim_s,steps,\
+         force_evaluations,pair_tests,outcome,machine"
+    );
+    assert_eq!(rows.len(), 1 + 6);
+    assert_eq!(rows[1][1..6], ["lecture", "4", "0.01", "0.1", "closed"]);
+    let thirty = rows
+        .iter()
+        .find(|row| row[1..3] == ["lecture", "30"])
+        .unwrap();
+    assert_eq!(thirty[7..14], ["", "", "", "", "", "", "BudgetSpent"]);
+    assert!(rows[1][7].parse::<f64>().unwrap() > 0.0);
+    let page = fs::read_to_string(own.join("README.md")).unwrap();
+    assert!(page.contains("What is fixed, and what each body and pair adds"));
+    assert_eq!(
+        own.join("cost-bodies.png").exists(),
+        cfg!(feature = "plots")
+    );
+    // The same table again is of the build that is here; under another name it is joined.
+    let other = table.replace(&format!("\n{},", rows[1][0]), "\nother,");
+    fs::write(folder.join("other.csv"), other).unwrap();
+    let joined = [&study[..], &quick, &["--out", "b", "--join", "other.csv"]].concat();
+    let said = carom(folder, &joined);
+    assert!(said.contains("lecture (other)"), "{said}");
+    let table = fs::read_to_string(folder.join("b/bodies.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 12);
+    for (arguments, remedy) in [
+        (&["--join", "runs/bodies/bodies.csv"][..], "other builds"),
+        (&["--join", "missing.csv"], "cannot be read"),
+        (&["--join", "other.csv", "--dt", "0.02"], "the same --dt"),
+        (&["--join", "other.csv", "--open"], "`closed`"),
+        (&["--dt", "-1"], "above 0"),
+        (&["--filling", "0.9"], "close packing"),
+    ] {
+        let mut command = Command::cargo_bin("carom").unwrap();
+        let output = command
+            .current_dir(folder)
+            .args([&study[..], &quick, &["--out", "c"], arguments].concat())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let complaint: Vec<_> = said
+            .lines()
+            .filter(|line| line.starts_with("error"))
+            .collect();
+        assert_eq!(
+            (output.status.code(), complaint.len()),
+            (Some(2), 1),
+            "{said}"
+        );
+        assert!(said.contains(remedy), "{said}");
+    }
+}
+
 #[test]
 fn the_study_of_cost_says_what_it_cannot_do() {
     let scratch = tempfile::tempdir().unwrap();
     for (arguments, remedy) in [
         (["--repetitions", "0"], "above 0"),
+        (["--phases", "2"], "at least 3"),
         (["--engine", "exact"], "exact-fast"),
     ] {
         let mut command = Command::cargo_bin("carom").unwrap();

@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use carom::case::Library;
 use carom::engine::engine;
 use carom::scene::{Contact, Drag, Rest, Scene};
-use carom::study::{Change, Effect, EffectStudy, effects};
+use carom::study::{Change, Effect, EffectStudy, Timing, effects};
 
 use crate::scenes::{body, oblique, scene};
 
@@ -14,7 +14,11 @@ const DT: f64 = 0.01;
 
 fn study(scene: &Scene, names: &[&str]) -> EffectStudy {
     let specs: Vec<_> = names.iter().map(|name| engine(name).unwrap()).collect();
-    effects(scene, &specs, DT, 1).unwrap()
+    let timing = Timing {
+        seed: 1,
+        repetitions: 1,
+    };
+    effects(scene, &specs, DT, timing).unwrap()
 }
 
 fn never_felt(study: &EffectStudy) -> Vec<Effect> {

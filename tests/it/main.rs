@@ -12,10 +12,12 @@ mod exact_flight;
 mod exact_forces;
 #[cfg(feature = "rapier")]
 mod geometry;
+mod hard;
 mod hostile;
 mod invariants;
 mod layers;
 mod ledger;
+mod limits;
 mod oracle;
 mod orders;
 mod own_truth;
@@ -25,3 +27,6 @@ mod plan;
 mod rapier;
 mod robust;
 mod scenes;
+mod studies;
+#[cfg(feature = "rapier")]
+mod swept_times;

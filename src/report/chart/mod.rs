@@ -5,6 +5,7 @@
 //! a gap in a curve, and a picture without data says so.
 
 mod axis;
+mod bars;
 mod canvas;
 mod curves;
 mod legend;
@@ -13,21 +14,29 @@ mod paths_figure;
 mod paths_look;
 mod png;
 mod polyline;
+mod room;
+mod scaling;
 mod text;
 mod theme;
 mod ticks;
 mod window;
 mod work;
+mod work_figure;
+mod work_look;
+mod work_plot;
 
 #[cfg(test)]
 mod testing;
 
 pub use axis::Scale;
+pub use bars::{Bar, BarGroup, BarsFigure, bars};
 pub use curves::{Curve, CurvesFigure, Marks, Panel, Weight, curves};
 pub use paths::paths;
 pub use paths_figure::{AxisLabel, PathBody, PathsFigure, View};
+pub use scaling::{Crossing, ScalingFigure, Spent, scaling};
 pub use theme::{COLOR_COUNT, LineStyle};
-pub use work::{WorkCurve, WorkFigure, WorkPoint, work};
+pub use work::work;
+pub use work_figure::{Answer, Goal, WorkCurve, WorkFigure, WorkPoint};
 
 /// Why a picture could not be made. None of these depends on the data.
 #[derive(Debug, thiserror::Error)]

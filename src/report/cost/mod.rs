@@ -1,48 +1,126 @@
-//! What a study of cost leaves in its folder: tables, a picture a scene, a page.
+//! What a study of cost leaves in its folder: tables, two pictures a scene, a page, a summary;
+//! and what a report tells of it later.
 
+#[cfg(feature = "plots")]
+mod colors;
+mod effort;
+mod findings;
 mod page;
+mod phase_tables;
 #[cfg(feature = "plots")]
 mod picture;
+mod price_table;
+#[cfg(feature = "plots")]
+mod prices_picture;
+mod push_out;
+mod section;
 mod tables;
 
-use super::Folder;
-use crate::error::Result;
-use crate::study::cost::{CostOptions, Machine, SceneCost};
+pub(super) use findings::headline;
+pub(super) use section::CostSection;
 
-/// A study of cost over some scenes.
-#[derive(Debug)]
-pub struct CostReport {
-    /// How it was made.
-    pub options: CostOptions,
-    /// Where it was made.
-    pub machine: Machine,
-    /// What was found.
-    pub scenes: Vec<SceneCost>,
+use super::Folder;
+use super::output::write_json;
+use crate::error::Result;
+use crate::study::cost::{CostOptions, CostSummary, SceneCost, SceneCostSummary};
+use page::ScenePart;
+
+/// The name of a scene's picture of price over error.
+fn work_picture(scene: &str) -> String {
+    format!("work-precision-{scene}.png")
+}
+
+/// The name of a scene's picture of the price tag.
+fn prices_picture(scene: &str) -> String {
+    format!("prices-{scene}.png")
 }
 
 /// Whether a file is one of an earlier study.
 fn is_stale(name: &str) -> bool {
     let picture = name.strip_suffix(".png").unwrap_or_default();
-    picture.starts_with("work-precision-")
-        || ["README.md", "cost.csv", "orders.csv"].contains(&name)
+    ["work-precision-", "prices-"]
+        .iter()
+        .any(|kind| picture.starts_with(kind))
+        || [
+            "README.md",
+            "cost.csv",
+            "work.csv",
+            "orders.csv",
+            "phases.csv",
+            "limits.csv",
+            "push-out.csv",
+            "summary.json",
+        ]
+        .contains(&name)
 }
 
-/// Writes `cost.csv`, `orders.csv`, the pictures and the page.
-///
-/// # Errors
-/// A file that cannot be written, with its name; each file is whole or not there.
-pub fn write_cost(folder: &Folder, report: &CostReport) -> Result<()> {
-    folder.remove(is_stale)?;
-    folder.write("cost.csv", |out| tables::write_points(&report.scenes, out))?;
-    folder.write("orders.csv", |out| {
-        tables::write_orders(&report.scenes, out)
-    })?;
-    #[cfg(feature = "plots")]
-    for scene in &report.scenes {
-        let picture = picture::work_precision_png(scene)?;
-        let name = format!("work-precision-{}.png", scene.scene.name);
-        folder.write(&name, |out| out.write_all(&picture))?;
+/// A study of cost in the making: what it has found, and the folder that tells of it.
+#[derive(Debug)]
+pub struct CostReport {
+    folder: Folder,
+    summary: CostSummary,
+    costs: Vec<SceneCost>,
+    parts: Vec<ScenePart>,
+}
+
+impl CostReport {
+    /// A study with nothing found yet; the folder is left alone until there is.
+    #[must_use]
+    pub fn begin(folder: Folder, options: CostOptions) -> Self {
+        Self {
+            folder,
+            summary: CostSummary::begin(options),
+            costs: Vec::new(),
+            parts: Vec::new(),
+        }
     }
-    let page = page::page(report, cfg!(feature = "plots"))?;
-    folder.write("README.md", |out| out.write_all(page.as_bytes()))
+
+    /// Adds what was found on a scene and writes the whole again, so that a study that is
+    /// interrupted leaves what it has.
+    ///
+    /// # Errors
+    /// A file that cannot be written, with its name; each file is whole or not there.
+    pub fn add(&mut self, cost: SceneCost) -> Result<()> {
+        if self.costs.is_empty() {
+            self.folder.remove(is_stale)?;
+        }
+        let scene = SceneCostSummary::of(&cost, self.seed())?;
+        #[cfg(feature = "plots")]
+        {
+            let name = &scene.scene;
+            let work = picture::work_precision_png(&cost, &scene)?;
+            let prices = prices_picture::prices_png(&scene)?;
+            for (name, png) in [(work_picture(name), work), (prices_picture(name), prices)] {
+                self.folder.write(&name, |out| out.write_all(&png))?;
+            }
+        }
+        self.parts.push(ScenePart::of(&cost, &scene, self.seed()));
+        self.summary.scenes.push(scene);
+        self.costs.push(cost);
+        self.write()
+    }
+
+    /// Seed of the intervals.
+    fn seed(&self) -> u64 {
+        self.summary.options.timing.seed
+    }
+
+    fn write(&self) -> Result<()> {
+        let folder = &self.folder;
+        folder.write("cost.csv", |out| tables::write_points(&self.costs, out))?;
+        folder.write("work.csv", |out| tables::write_work(&self.costs, out))?;
+        folder.write("orders.csv", |out| tables::write_orders(&self.costs, out))?;
+        folder.write("phases.csv", |out| {
+            phase_tables::write_phases(&self.costs, out)
+        })?;
+        folder.write("limits.csv", |out| {
+            phase_tables::write_limits(&self.costs, self.seed(), out)
+        })?;
+        folder.write("push-out.csv", |out| {
+            push_out::write_push_out(&self.costs, out)
+        })?;
+        let page = page::page(&self.summary, &self.parts)?;
+        folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+        folder.write("summary.json", |out| write_json(out, &self.summary))
+    }
 }

@@ -1,15 +1,20 @@
 //! The page of a study of cost.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
-use super::CostReport;
+use super::effort::{step_rows, work_rows};
+use super::findings::{headline, of_scene};
+use super::price_table::{NOTHING, PriceTable, Row};
+use super::push_out::{self, PushOutPart};
 use crate::error::Result;
+use crate::report::case_page::with_unit;
 use crate::report::engineering;
+use crate::report::limits::estimate;
+use crate::report::overhead::OVERHEAD_HEADER;
 use crate::report::template::fill;
+use crate::study::Ratio;
 use crate::study::cost::{
-    Comparison, CostOptions, CostPoint, Machine, Order, PriceTag, Ratio, SceneCost, Verdict,
+    CostPoint, CostSummary, EngineLimit, Order, OrderRow, PriceTag, SceneCost, SceneCostSummary,
 };
 
 const TEMPLATE: &str = include_str!("../../../templates/cost.md");
@@ -20,46 +25,41 @@ const PRICES: [f64; 5] = [0.001, 0.01, 0.1, 1.0, 10.0];
 /// What the template is given.
 #[derive(Serialize)]
 struct Page<'a> {
-    machine: &'a Machine,
-    versions: BTreeMap<&'static str, &'static str>,
-    seed: u64,
-    repetitions: usize,
-    budget: u64,
-    debug_build: bool,
-    scenes: Vec<ScenePart>,
+    summary: &'a CostSummary,
+    headline: Option<String>,
+    busy: bool,
+    parts: [&'static str; 5],
+    scenes: &'a [ScenePart],
 }
 
-#[derive(Serialize)]
-struct ScenePart {
+/// What the page has to say about one scene.
+#[derive(Debug, Serialize)]
+pub(super) struct ScenePart {
     name: String,
     title: String,
-    bodies: usize,
-    unit: &'static str,
-    picture: bool,
+    pictures: bool,
     findings: Vec<String>,
     notes: Vec<String>,
-    targets: Vec<String>,
-    prices: Vec<String>,
-    tags: Vec<Row>,
-    errors: Vec<Row>,
-    rankings: Vec<String>,
-    verdicts: Vec<VerdictRow>,
-    orders: Vec<Row>,
-    spent: Vec<Row>,
     refusals: Vec<String>,
+    tags: PriceTable,
+    targets: Vec<String>,
+    ratios: Vec<Row>,
+    prices: Vec<String>,
+    errors: Vec<Row>,
+    limits: Vec<LimitLine>,
+    orders: Vec<Row>,
+    work: Vec<Row>,
+    steps: Vec<Row>,
+    phases: usize,
+    push_out: Vec<PushOutPart>,
+    spent: Vec<Row>,
 }
 
-/// A row of a table: who, and a cell for each column.
-#[derive(Serialize)]
-struct Row {
-    engine: String,
-    cells: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct VerdictRow {
+#[derive(Debug, Serialize)]
+struct LimitLine {
     engine: String,
     kind: &'static str,
+    stays: String,
     finest: String,
     slope: String,
     floor: String,
@@ -69,202 +69,143 @@ struct VerdictRow {
 ///
 /// # Errors
 /// A fault of the template.
-pub(super) fn page(report: &CostReport, pictures: bool) -> Result<String> {
-    let CostOptions {
-        seed,
-        repetitions,
-        budget,
-    } = report.options;
-    let scenes = report.scenes.iter();
+pub(super) fn page(summary: &CostSummary, scenes: &[ScenePart]) -> Result<String> {
     let page = Page {
-        machine: &report.machine,
-        versions: crate::engine::versions(),
-        seed,
-        repetitions,
-        budget,
-        debug_build: cfg!(debug_assertions),
-        scenes: scenes
-            .map(|cost| scene_part(cost, seed, pictures))
-            .collect(),
+        summary,
+        headline: (scenes.len() > 1).then(|| headline(summary)),
+        busy: summary.machine.is_busy(),
+        parts: OVERHEAD_HEADER,
+        scenes,
     };
     fill(TEMPLATE, page)
 }
 
-fn scene_part(cost: &SceneCost, seed: u64, pictures: bool) -> ScenePart {
-    let unit = cost.scene.units.length.symbol();
-    let tags = cost.price_tags();
-    let column = |find: &dyn Fn(usize) -> String, count: usize| (0..count).map(find).collect();
-    let tag_row = |(place, engine): (usize, &str)| Row {
-        engine: engine.to_owned(),
-        cells: column(&|at| priced(tags[at].cheapest[place].1), tags.len()),
-    };
-    let bought = PRICES.map(|price| cost.for_price(price));
-    let error_row = |(place, engine): (usize, &str)| Row {
-        engine: engine.to_owned(),
-        cells: column(&|at| left(bought[at][place].1, unit), PRICES.len()),
-    };
-    let names: Vec<&str> = cost
-        .engines
-        .iter()
-        .map(|engine| engine.spec.name.as_str())
-        .collect();
-    ScenePart {
-        name: cost.scene.name.clone(),
-        title: cost.scene.heading().to_owned(),
-        bodies: cost.scene.bodies.len(),
-        unit,
-        picture: pictures,
-        findings: findings(cost, &tags),
-        notes: cost.notes.clone(),
-        targets: tags.iter().map(|tag| with(tag.target, unit)).collect(),
-        prices: PRICES.map(engineering).to_vec(),
-        tags: names.iter().copied().enumerate().map(tag_row).collect(),
-        errors: names.iter().copied().enumerate().map(error_row).collect(),
-        rankings: tags
-            .iter()
-            .flat_map(|tag| {
-                let ranked = tag.comparisons(seed).into_iter();
-                let rows: Vec<_> = ranked.map(|row| ranking(tag.target, unit, &row)).collect();
-                rows
-            })
-            .collect(),
-        verdicts: cost
-            .verdicts()
-            .iter()
-            .map(|row| verdict(row, unit))
-            .collect(),
-        orders: orders(cost),
-        spent: cost
+impl ScenePart {
+    /// What is worth saying of a scene's study; `seed` is that of the intervals.
+    pub(super) fn of(cost: &SceneCost, summary: &SceneCostSummary, seed: u64) -> Self {
+        let unit = summary.length_unit.symbol();
+        let tags = cost.price_tags();
+        let names: Vec<&str> = cost
             .engines
             .iter()
-            .map(|engine| Row {
-                engine: engine.spec.name.clone(),
-                cells: vec![engine.settings.to_string(), engine.runs.to_string()],
-            })
-            .collect(),
-        refusals: cost
-            .refusals
-            .iter()
-            .map(|refusal| format!("{}: {}", refusal.engine, refusal.reason))
-            .collect(),
-    }
-}
-
-/// The answers in sentences: who is cheapest at each accuracy, and where accuracy stops mattering.
-fn findings(cost: &SceneCost, tags: &[PriceTag]) -> Vec<String> {
-    let unit = cost.scene.units.length.symbol();
-    let mut found = Vec::new();
-    for tag in tags {
-        let stepping = tag.cheapest.iter().filter(|(engine, _)| {
-            let steps = |of: &crate::study::cost::EngineCost| {
-                of.spec.name == *engine && of.spec.takes_steps()
-            };
-            cost.engines.iter().any(steps)
-        });
-        let kept = stepping.filter_map(|(engine, point)| Some((engine, (*point)?)));
-        let by_cost = |a: &(_, &CostPoint), b: &(_, &CostPoint)| {
-            let price = |point: &CostPoint| point.cost().unwrap_or(f64::INFINITY);
-            price(a.1).total_cmp(&price(b.1))
+            .map(|engine| &*engine.spec.name)
+            .collect();
+        let bought = PRICES.map(|price| cost.for_price(price));
+        let error_row = |(place, engine): (usize, &&str)| Row {
+            engine: (*engine).to_owned(),
+            cells: bought.iter().map(|all| left(all[place].1, unit)).collect(),
         };
-        let target = with(tag.target, unit);
-        found.push(match kept.min_by(by_cost) {
-            Some((engine, point)) => format!(
-                "Of the engines that take steps, {engine} keeps {target} for the least time: {}.",
-                priced(Some(point))
-            ),
-            None => format!("No engine that takes steps keeps {target} within its budget."),
+        let limits = &summary.limits;
+        let spent = cost.engines.iter().map(|engine| Row {
+            engine: engine.spec.name.clone(),
+            cells: vec![engine.settings.to_string(), engine.runs.to_string()],
         });
+        let refusals = cost.refusals.iter();
+        Self {
+            name: summary.scene.clone(),
+            title: summary.title.clone(),
+            pictures: cfg!(feature = "plots"),
+            findings: of_scene(summary),
+            notes: cost.notes.clone(),
+            refusals: refusals
+                .map(|refusal| format!("{}: {}", refusal.engine, refusal.reason))
+                .collect(),
+            tags: PriceTable::of(summary),
+            targets: tags.iter().map(|tag| tag.target.name.to_owned()).collect(),
+            ratios: ratios(&tags, &names, seed),
+            prices: PRICES.map(|price| price.to_string()).to_vec(),
+            errors: names.iter().enumerate().map(error_row).collect(),
+            limits: limits.iter().map(|row| limit_line(row, unit)).collect(),
+            orders: orders(cost),
+            work: work_rows(cost),
+            steps: step_rows(cost),
+            phases: cost.phases.len(),
+            push_out: push_out::parts(cost),
+            spent: spent.collect(),
+        }
     }
-    if let Some(off) = &cost.sensitivity {
-        found.push(format!(
-            "A better answer than {} is for nobody: `{}` placed {} off moves the result by as much.",
-            with(off.distance, unit),
-            off.body.replace('`', "'"),
-            with(off.moved, unit)
-        ));
-    }
-    found
-}
-
-/// A price with how it is had.
-fn priced(point: Option<&CostPoint>) -> String {
-    let Some((point, cost)) = point.and_then(|point| Some((point, point.cost()?))) else {
-        return "–".to_owned();
-    };
-    format!("{} ({})", engineering(cost), way(point))
 }
 
 /// An error with how it is had.
 fn left(point: Option<&CostPoint>, unit: &str) -> String {
     let Some((point, error)) = point.and_then(|point| Some((point, point.error()?))) else {
-        return "–".to_owned();
+        return NOTHING.to_owned();
     };
-    format!("{} ({})", with(error, unit), way(point))
-}
-
-/// Step and setting of a point.
-fn way(point: &CostPoint) -> String {
-    let step = point.dt.map_or("no step".to_owned(), |dt| {
-        format!("dt {} s", engineering(dt))
-    });
-    if point.is_stock() {
-        step
-    } else {
-        format!("{step}, {}", point.setting)
+    let step = point.dt.map(|dt| format!("dt {} s", engineering(dt)));
+    let setting = (!point.is_stock()).then(|| point.setting.clone());
+    let way: Vec<_> = step.into_iter().chain(setting).collect();
+    let error = with_unit(error, unit);
+    if way.is_empty() {
+        return error;
     }
+    format!("{error} ({})", way.join(", "))
 }
 
-fn with(value: f64, unit: &str) -> String {
-    format!("{} {unit}", engineering(value))
-        .trim_end()
-        .to_owned()
-}
-
-/// A comparison in words; no ranking where the interval spans 1.
-fn ranking(target: f64, unit: &str, row: &Comparison) -> String {
-    let target = with(target, unit);
-    let (engine, cheapest) = (row.engine, row.cheapest);
-    match row.ratio {
-        None => format!("{target}: {engine} and {cheapest} are not ranked, too few rounds."),
-        Some(ratio @ Ratio { median, low, high }) => {
-            let interval = [low, high].map(engineering).join(" to ");
-            if ratio.is_decided() {
-                let median = engineering(median);
-                format!(
-                    "{target}: {engine} takes {median} times as long as {cheapest} ({interval})."
-                )
-            } else {
-                format!("{target}: {engine} and {cheapest} cannot be ranked ({interval}).")
-            }
+/// How many times as much as the cheapest each engine takes for each accuracy; only engines that
+/// keep one.
+fn ratios(tags: &[PriceTag], names: &[&str], seed: u64) -> Vec<Row> {
+    let compared: Vec<_> = tags.iter().map(|tag| tag.comparisons(seed)).collect();
+    let cell = |engine: &str, place: usize| {
+        let keeps = |(name, point): &(&str, Option<&CostPoint>)| *name == engine && point.is_some();
+        let against = compared[place].iter().find(|row| row.engine == engine);
+        match against {
+            Some(against) => Some(ranking(against.ratio)),
+            None if tags[place].cheapest.iter().any(keeps) => Some("cheapest".to_owned()),
+            None => None,
         }
+    };
+    let row = |engine: &&str| {
+        let cells: Vec<_> = (0..tags.len()).map(|place| cell(engine, place)).collect();
+        cells.iter().any(Option::is_some).then(|| Row {
+            engine: (*engine).to_owned(),
+            cells: cells
+                .into_iter()
+                .map(|cell| cell.unwrap_or(NOTHING.into()))
+                .collect(),
+        })
+    };
+    names.iter().filter_map(row).collect()
+}
+
+/// A ratio with its interval; no ranking where the interval spans 1.
+fn ranking(ratio: Option<Ratio>) -> String {
+    let Some(ratio @ Ratio { median, low, high }) = ratio else {
+        return "too few rounds".to_owned();
+    };
+    let [median, low, high] = [median, low, high].map(engineering);
+    if ratio.is_decided() {
+        format!("{median} ({low} to {high})")
+    } else {
+        format!("not ranked ({low} to {high})")
     }
 }
 
-fn verdict(row: &Verdict, unit: &str) -> VerdictRow {
+fn limit_line(row: &EngineLimit, unit: &str) -> LimitLine {
     let limit = row.limit;
-    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
-    VerdictRow {
+    let or_nothing = |text: Option<String>| text.unwrap_or_else(|| NOTHING.to_owned());
+    let stays = limit.and_then(|limit| limit.stays);
+    let slope = limit.and_then(|limit| limit.slope);
+    LimitLine {
         engine: row.engine.clone(),
         kind: limit.map_or("too few points", |limit| limit.kind.word()),
-        finest: or_dash(limit.map(|limit| with(limit.finest, unit))),
-        slope: or_dash(
-            limit
-                .and_then(|limit| limit.slope)
-                .map(|slope| format!("{slope:.2}")),
-        ),
-        floor: with(row.floor, unit),
+        stays: or_nothing(stays.map(|stays| estimate(&stays, unit))),
+        finest: or_nothing(limit.map(|limit| with_unit(limit.finest, unit))),
+        slope: or_nothing(slope.map(|slope| format!("{slope:.2}"))),
+        floor: or_nothing(limit.map(|limit| with_unit(limit.floor, unit))),
     }
 }
 
-/// The orders of position, energy and local error, with their intervals.
+/// The orders of position, energy and local error, with their intervals; only engines that have
+/// one.
 fn orders(cost: &SceneCost) -> Vec<Row> {
     let rows = cost.orders();
     let cell = |order: Option<Order>| match order {
         Some(Order { order, low, high }) => format!("{order:.2} ({low:.2} to {high:.2})"),
-        None => String::new(),
+        None => NOTHING.to_owned(),
     };
     let of_engine = rows.chunk_by(|a, b| a.engine == b.engine);
-    let row = |chunk: &[crate::study::cost::OrderRow]| Row {
+    let of_engine = of_engine.filter(|rows| rows.iter().any(|row| row.fit.order.is_some()));
+    let row = |chunk: &[OrderRow]| Row {
         engine: chunk[0].engine.clone(),
         cells: chunk.iter().map(|row| cell(row.fit.order)).collect(),
     };

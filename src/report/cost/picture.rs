@@ -1,94 +1,148 @@
 //! The work-precision picture of a scene.
 
+use super::colors::{Look, looks};
+use super::findings::{placed_off, way};
 use crate::error::{Error, Result};
-use crate::report::chart::{LineStyle, WorkCurve, WorkFigure, WorkPoint, work};
+use crate::report::chart::{Answer, Goal, Weight, WorkCurve, WorkFigure, WorkPoint, work};
 use crate::report::engineering;
-use crate::study::cost::{CostPoint, EngineCost, SceneCost, pareto_front};
+use crate::study::cost::{
+    CostPoint, Family, Offer, SceneCost, SceneCostSummary, TagSummary, pareto_front,
+};
+
+/// Errors below this share of the finest accuracy asked for are all alike in the picture: what
+/// is left of them is rounding, and it would squeeze all others to the side.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// Draws price over error of every engine.
-pub(super) fn work_precision_png(cost: &SceneCost) -> Result<Vec<u8>> {
-    work(&figure(cost)).map_err(|wrong| Error::Picture {
+pub(super) fn work_precision_png(cost: &SceneCost, summary: &SceneCostSummary) -> Result<Vec<u8>> {
+    work(&figure(cost, summary)).map_err(|wrong| Error::Picture {
         name: "work-precision",
         message: wrong.to_string(),
     })
 }
 
-/// Error and price of a point that has both; the error no smaller than the picture shows.
-fn pair(point: &CostPoint, least: f64) -> Option<[f64; 2]> {
-    Some([point.error()?.max(least), point.cost()?])
+/// Error and price of a point that has both.
+fn pair(point: &CostPoint) -> Option<[f64; 2]> {
+    Some([point.error()?, point.cost()?])
 }
 
-/// The smallest error that is shown: a decade below that of any step, so that an engine without
-/// steps, whose error is rounding, does not squeeze all others to the side.
-fn least_shown(cost: &SceneCost) -> f64 {
-    let stepping = cost.points.iter().filter(|point| point.dt.is_some());
-    let positive = stepping
-        .filter_map(CostPoint::error)
-        .filter(|error| *error > 0.0);
-    positive.reduce(f64::min).map_or(0.0, |error| 0.1 * error)
+/// The cheapest way with steps to an accuracy: the place of the engine, and how.
+fn answer(tag: &TagSummary, looks: &[Look]) -> Option<Answer> {
+    let (offer, bid) = tag.cheapest(|offer| offer.family.takes_steps())?;
+    let place = tag.offers.iter().position(|other| other == offer)?;
+    Some(Answer {
+        who: offer.engine.clone(),
+        color: looks.get(place)?.color,
+        how: way(bid),
+        at: [bid.position_error_max, bid.cost_ms_per_sim_s],
+    })
 }
 
-fn figure(cost: &SceneCost) -> WorkFigure {
-    let scene = &cost.scene;
-    let unit = scene.units.length.symbol();
-    let engines = cost.engines.iter().enumerate();
-    let least = least_shown(cost);
-    let curves = engines.map(|(place, engine)| curve(cost, place, engine, least));
-    let points = cost.points.iter();
-    let (exact, all): (Vec<_>, Vec<_>) = points
-        .filter_map(|point| Some((pair(point, 0.0)?, pair(point, least)?)))
-        .unzip();
-    let front = pareto_front(&exact).into_iter().map(|place| all[place]);
-    let until = cost.compared_until.map_or_else(
+fn figure(cost: &SceneCost, summary: &SceneCostSummary) -> WorkFigure {
+    let unit = summary.length_unit.symbol();
+    let offers = summary.tags.first().map_or(&[][..], |tag| &tag.offers);
+    let families: Vec<Family> = offers.iter().map(|offer| offer.family).collect();
+    let looks = looks(&families);
+    let goals = summary.tags.iter().rev().map(|tag| Goal {
+        error: tag.position_error_max,
+        name: tag.name.clone(),
+        answer: answer(tag, &looks),
+    });
+    let goals: Vec<Goal> = goals.collect();
+    let is_named = |engine: &str| {
+        let mut answers = goals.iter().filter_map(|goal| goal.answer.as_ref());
+        answers.any(|answer| answer.who == engine)
+    };
+    let first = offers.iter().find(|offer| offer.family == Family::Impulse);
+    let weight = |offer: &Offer| match offer.family {
+        Family::Rapier | Family::Exact => Weight::Main,
+        Family::Impulse if Some(offer) == first || is_named(&offer.engine) => Weight::Main,
+        Family::Impulse => Weight::Aside,
+    };
+    let curves = offers.iter().zip(&looks);
+    let curves = curves.map(|(offer, look)| curve(cost, &offer.engine, *look, weight(offer)));
+    let pairs: Vec<[f64; 2]> = cost.points.iter().filter_map(pair).collect();
+    let until = summary.compared_until_s.map_or_else(
         || "against each one's own finest step".to_owned(),
-        |until| format!("up to {} s", engineering(until)),
+        |until| format!("until {} s", engineering(until)),
     );
-    let sensitivity = cost.sensitivity.as_ref();
+    let sensitivity = summary.sensitivity.as_ref();
     WorkFigure {
-        title: scene.heading().to_owned(),
-        subtitle: format!("what accuracy costs: steps dt beside the points, errors {until}"),
+        title: summary.title.clone(),
+        subtitle: format!("what accuracy costs; errors {until}; steps beside the ends of curves"),
         x_label: if unit.is_empty() {
             "largest position error".to_owned()
         } else {
             format!("largest position error [{unit}]")
         },
         y_label: "ms per simulated second".to_owned(),
+        least: goals.first().map_or(0.0, |goal| LEAST_SHARE * goal.error),
         curves: curves.collect(),
-        front: front.collect(),
+        front: pareto_front(&pairs)
+            .into_iter()
+            .map(|place| pairs[place])
+            .collect(),
         enough: sensitivity.map(|off| {
-            let moved = format!("{} {unit}", engineering(off.moved));
-            let label = format!("a ball placed {} off does this", moved.trim_end());
-            (off.distance, label)
+            let moved = placed_off(off, summary.length_unit);
+            (off.distance, format!("a ball {moved} off"))
         }),
+        goals,
     }
 }
 
-fn curve(cost: &SceneCost, place: usize, engine: &EngineCost, least: f64) -> WorkCurve {
-    let name = &engine.spec.name;
-    let unit = cost.scene.units.length.symbol();
-    let label = |point: &CostPoint| match (point.dt, point.error()) {
-        (Some(dt), _) => format!("{} s", engineering(dt)),
-        (None, Some(error)) if error < least => format!("← {} {unit}", engineering(error))
-            .trim_end()
-            .to_owned(),
-        (None, _) => String::new(),
-    };
+fn curve(cost: &SceneCost, engine: &str, look: Look, weight: Weight) -> WorkCurve {
+    let label = |dt: f64| format!("{} s", engineering(dt));
     let point = |point: &CostPoint| {
-        let [error, price] = pair(point, least)?;
+        let [error, price] = pair(point)?;
         Some(WorkPoint {
             error,
             price,
-            label: label(point),
+            label: point.dt.map_or_else(String::new, label),
         })
     };
     let others = cost.points.iter();
-    let others = others.filter(|point| point.engine == *name && !point.is_stock());
+    let others = others.filter(|point| point.engine == engine && !point.is_stock());
     WorkCurve {
-        label: name.clone(),
-        color: place,
-        // Solid and dashed in turn: neighbours that coincide both show.
-        line: LineStyle::of_voice(place % 2),
-        points: cost.stock(name).filter_map(point).collect(),
-        others: others.filter_map(|point| pair(point, least)).collect(),
+        label: engine.to_owned(),
+        color: look.color,
+        line: look.line,
+        weight,
+        points: cost.stock(engine).filter_map(point).collect(),
+        others: others.filter_map(pair).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::cost::testing::study;
+
+    /// The answers stand from small errors to large ones, and who gives one is drawn strongly.
+    #[test]
+    fn the_picture_names_the_cheapest_for_each_accuracy() {
+        let cost = study(&[
+            ("a", "stock", &[(5.0, 3.0), (0.5, 4.0)]),
+            ("b", "stock", &[(5.0, 2.0), (2.0, 3.0)]),
+            ("c", "stock", &[(50.0, 9.0)]),
+        ]);
+        let summary = SceneCostSummary::of(&cost, 1).unwrap();
+        let figure = figure(&cost, &summary);
+        let said = figure.goals.iter().map(|goal| {
+            let answer = goal.answer.as_ref();
+            (&*goal.name, answer.map(|answer| (&*answer.who, answer.at)))
+        });
+        assert_eq!(
+            said.collect::<Vec<_>>(),
+            [
+                ("0.001 mm", None),
+                ("0.1 mm", None),
+                ("1 mm", Some(("a", [0.5, 4.0]))),
+                ("10 mm", Some(("b", [5.0, 2.0])))
+            ]
+        );
+        let weights: Vec<_> = figure.curves.iter().map(|curve| curve.weight).collect();
+        assert_eq!(weights, [Weight::Main, Weight::Main, Weight::Aside]);
+        assert_eq!(figure.front, [[0.5, 4.0], [2.0, 3.0], [5.0, 2.0]]);
+        assert!((figure.least - 1e-6).abs() < 1e-18);
     }
 }

@@ -1,4 +1,4 @@
-//! `cost.csv` and `orders.csv`: every point once, drawn and judged afterwards.
+//! `cost.csv`, `work.csv` and `orders.csv`: every point once, drawn and judged afterwards.
 
 use std::io::{self, Write};
 
@@ -41,7 +41,7 @@ impl<'a> CostRow<'a> {
             local_error: point.errors.local,
             cost_ms_per_sim_s: point.cost(),
             cost_min_ms_per_sim_s: price.map(|price| price.min),
-            steps: price.map(|price| price.steps),
+            steps: price.map(|price| price.work.steps),
             outcome: point.ending.word(),
         }
     }
@@ -54,6 +54,54 @@ pub(super) fn write_points(scenes: &[SceneCost], out: &mut dyn Write) -> io::Res
         for point in &cost.points {
             table.serialize(CostRow::new(&cost.scene.name, point))?;
         }
+    }
+    table.flush()
+}
+
+/// A row of `work.csv`; the names of the fields are the header.
+#[derive(Serialize)]
+struct WorkRow<'a> {
+    scene: &'a str,
+    engine: &'a str,
+    setting: &'a str,
+    dt: Option<f64>,
+    steps_per_sim_s: f64,
+    force_evaluations_per_sim_s: f64,
+    pair_tests_per_sim_s: f64,
+}
+
+/// Writes `work.csv`: what each run that was priced counted in a simulated second.
+pub(super) fn write_work(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let mut is_empty = true;
+    for cost in scenes {
+        for point in &cost.points {
+            let Some([steps, forces, pairs]) = cost.work_per_sim_s(point) else {
+                continue;
+            };
+            is_empty = false;
+            table.serialize(WorkRow {
+                scene: &cost.scene.name,
+                engine: &point.engine,
+                setting: &point.setting,
+                dt: point.dt,
+                steps_per_sim_s: steps,
+                force_evaluations_per_sim_s: forces,
+                pair_tests_per_sim_s: pairs,
+            })?;
+        }
+    }
+    if is_empty {
+        // No run was priced: the header, so that a program finds the table it expects.
+        table.write_record([
+            "scene",
+            "engine",
+            "setting",
+            "dt",
+            "steps_per_sim_s",
+            "force_evaluations_per_sim_s",
+            "pair_tests_per_sim_s",
+        ])?;
     }
     table.flush()
 }
@@ -93,25 +141,38 @@ impl<'a> OrdersRow<'a> {
 
 /// Writes `orders.csv`: a row for every error of every engine that takes steps.
 pub(super) fn write_orders(scenes: &[SceneCost], out: &mut dyn Write) -> io::Result<()> {
+    let orders: Vec<_> = scenes.iter().map(|cost| (cost, cost.orders())).collect();
+    let rows = orders.iter().flat_map(|(cost, orders)| {
+        let row = |row| OrdersRow::new(&cost.scene, row);
+        orders.iter().map(row)
+    });
+    let header = [
+        "scene",
+        "engine",
+        "error",
+        "order",
+        "low",
+        "high",
+        "stated_order",
+        "points",
+    ];
+    write_rows(&header, rows, out)
+}
+
+/// Writes a table; without a row the header, so that a program finds the table it expects.
+pub(super) fn write_rows(
+    header: &[&str],
+    rows: impl Iterator<Item = impl Serialize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let rows: Vec<_> = scenes.iter().map(|cost| (cost, cost.orders())).collect();
-    if rows.iter().all(|(_, orders)| orders.is_empty()) {
-        // No engine takes steps: the header, so that a program finds the table it expects.
-        table.write_record([
-            "scene",
-            "engine",
-            "error",
-            "order",
-            "low",
-            "high",
-            "stated_order",
-            "points",
-        ])?;
+    let mut is_empty = true;
+    for row in rows {
+        table.serialize(row)?;
+        is_empty = false;
     }
-    for (cost, orders) in &rows {
-        for row in orders {
-            table.serialize(OrdersRow::new(&cost.scene, row))?;
-        }
+    if is_empty {
+        table.write_record(header)?;
     }
     table.flush()
 }

@@ -34,6 +34,9 @@ impl Default for Gas {
 
 const RADIUS: f64 = 0.5;
 
+/// A lattice of more cells an edge is a slip of the pen.
+const CELLS_MAX: usize = 63;
+
 /// The four places in a cell, in lattice constants.
 const BASIS: [[f64; 3]; 4] = [
     [0.25, 0.25, 0.25],
@@ -48,19 +51,12 @@ impl Gas {
     /// # Errors
     /// [`Error::Argument`] if there is no cell, too many of them, or no room between the spheres.
     pub fn scene(&self) -> Result<Scene> {
-        let packed = std::f64::consts::PI / 18.0_f64.sqrt();
-        if !(self.filling > 0.0 && self.filling < packed) {
-            return Err(Error::Argument {
-                argument: "filling",
-                found: self.filling.to_string(),
-                remedy: format!("give a fraction above 0 and below {packed:.4}, close packing"),
-            });
-        }
-        if !(1..=63).contains(&self.cells) {
+        check_filling(self.filling)?;
+        if !(1..=CELLS_MAX).contains(&self.cells) {
             return Err(Error::Argument {
                 argument: "cells",
                 found: self.cells.to_string(),
-                remedy: "give 1 to 63 cells an edge (4 to 1,000,188 spheres)".into(),
+                remedy: format!("give 1 to {CELLS_MAX} cells an edge (4 to 1,000,188 spheres)"),
             });
         }
         #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
@@ -104,6 +100,54 @@ impl Gas {
         Ok(scene)
     }
 
+    /// Any number of spheres at a filling fraction of the box: the smallest lattice with so many
+    /// places, evenly thinned.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] as for [`scene`](Self::scene), if the lattice has no room in the box.
+    pub fn thinned(count: usize, filling: f64, seed: u64) -> Result<Scene> {
+        check_filling(filling)?;
+        let places = |cells: &usize| BASIS.len() * cells.pow(3);
+        let cells = (1..=CELLS_MAX).find(|cells| count <= places(cells));
+        let wrong = |remedy: String| Error::Argument {
+            argument: "count",
+            found: count.to_string(),
+            remedy,
+        };
+        let cells = cells
+            .filter(|_| count > 0)
+            .ok_or_else(|| wrong(format!("give 1 to {} spheres", places(&CELLS_MAX))))?;
+        let places = places(&cells);
+        #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
+        let full = Self {
+            cells,
+            filling: filling * places as f64 / count as f64,
+            seed,
+        };
+        let mut scene = full.scene().map_err(|_| {
+            wrong(format!(
+                "its lattice of {places} places does not fit into the box; give another number \
+                 or another filling fraction than {filling}"
+            ))
+        })?;
+        let mut place = 0;
+        scene.bodies.retain(|_| {
+            place += 1;
+            place * count / places > (place - 1) * count / places
+        });
+        for (place, body) in scene.bodies.iter_mut().enumerate() {
+            body.name = format!("s{place}");
+        }
+        put_at_rest(&mut scene.bodies);
+        scene.name = format!("gas-{count}");
+        scene.title = Some(format!("elastic gas of {count} spheres"));
+        scene.source = Some(format!(
+            "carom scenes generate gas --count {count} --filling {filling} --seed {seed}"
+        ));
+        scene.checked()?;
+        Ok(scene)
+    }
+
     fn bodies(&self, constant: f64) -> Vec<Body> {
         let mut random = Random::new(self.seed);
         #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
@@ -128,14 +172,31 @@ impl Gas {
                 });
             }
         }
-        #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
-        let count = bodies.len() as f64;
-        let mean =
-            [0, 1, 2].map(|axis| bodies.iter().map(|b| b.velocity[axis]).sum::<f64>() / count);
-        for body in &mut bodies {
-            body.velocity = [0, 1, 2].map(|axis| body.velocity[axis] - mean[axis]);
-        }
+        put_at_rest(&mut bodies);
         bodies
+    }
+}
+
+/// Close packing is the most that a filling fraction can be.
+fn check_filling(filling: f64) -> Result<()> {
+    let packed = std::f64::consts::PI / 18.0_f64.sqrt();
+    if filling > 0.0 && filling < packed {
+        return Ok(());
+    }
+    Err(Error::Argument {
+        argument: "filling",
+        found: filling.to_string(),
+        remedy: format!("give a fraction above 0 and below {packed:.4}, close packing"),
+    })
+}
+
+/// Takes the mean out of the velocities.
+fn put_at_rest(bodies: &mut [Body]) {
+    #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
+    let count = bodies.len() as f64;
+    let mean = [0, 1, 2].map(|axis| bodies.iter().map(|b| b.velocity[axis]).sum::<f64>() / count);
+    for body in bodies {
+        body.velocity = [0, 1, 2].map(|axis| body.velocity[axis] - mean[axis]);
     }
 }
 
@@ -175,5 +236,37 @@ mod tests {
                 .to_string()
                 .contains("between the walls")
         );
+    }
+
+    /// The filling is that of the spheres that are left, and they are left everywhere: each half
+    /// of the box holds half of them, give or take those of a layer of the lattice.
+    #[test]
+    fn a_thinned_gas_has_its_number_and_its_filling_everywhere() {
+        for count in [1, 4, 10, 30, 100, 300, 1000] {
+            let scene = Gas::thinned(count, 0.1, 3).unwrap();
+            assert_eq!(scene.bodies.len(), count);
+            assert!(scene.warnings().is_empty(), "{count}");
+            let half = scene.effects.cushions.unwrap().half_width;
+            #[allow(clippy::cast_precision_loss, reason = "a thousand")]
+            let spheres = count as f64;
+            let volume = spheres * std::f64::consts::PI / 6.0;
+            assert!((volume / (2.0 * half).powi(3) - 0.1).abs() < 1e-12);
+            for axis in 0..3 {
+                let sum: f64 = scene.bodies.iter().map(|body| body.velocity[axis]).sum();
+                assert!(sum.abs() < 1e-12 * spheres, "{count}: {sum}");
+                let above = scene.bodies.iter().filter(|b| b.position[axis] > 0.0);
+                #[allow(clippy::cast_precision_loss, reason = "a thousand")]
+                let off = (above.count() as f64 - 0.5 * spheres).abs();
+                assert!(off <= 1.0 + spheres.powf(2.0 / 3.0), "{count}: {off}");
+            }
+        }
+        let full = Gas {
+            cells: 3,
+            filling: 0.1,
+            seed: 3,
+        };
+        let same = Gas::thinned(108, 0.1, 3).unwrap();
+        assert_eq!(full.scene().unwrap().effects, same.effects);
+        assert!(Gas::thinned(0, 0.1, 1).is_err() && Gas::thinned(5, 0.1, 1).is_err());
     }
 }

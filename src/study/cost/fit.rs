@@ -1,20 +1,16 @@
-//! Orders of convergence, and what becomes of an error as the step goes to 0.
-
-use serde::Serialize;
+//! Orders of convergence.
 
 /// Fewer points say nothing about a slope.
-const POINTS_MIN: usize = 4;
+pub(super) const POINTS_MIN: usize = 4;
 /// The finest points of a ladder that a fit uses: farther up, the step is not small.
-const POINTS_MAX: usize = 8;
+pub(super) const POINTS_MAX: usize = 6;
 /// A slope flatter than this is a plateau.
-const FLAT: f64 = 0.25;
-/// Points from which a limit is read.
-const LIMIT_POINTS: usize = 4;
+pub(super) const FLAT: f64 = 0.25;
 /// A slope with a wider half-interval than this means nothing.
 const VAGUE: f64 = 0.5;
 
 /// Two-sided 95 % quantiles of Student's t for 2, 3, ... degrees of freedom.
-const STUDENT: [f64; 6] = [4.303, 3.182, 2.776, 2.571, 2.447, 2.365];
+const STUDENT: [f64; 3] = [4.303, 3.182, 2.776];
 
 /// A fitted order of convergence with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,21 +68,26 @@ pub fn fit_order(points: &[[f64; 2]], window: Window) -> OrderFit {
             points: count,
         };
     }
-    let (slope, error) = slope(&usable);
-    let half = STUDENT[count - POINTS_MIN] * error;
-    let meant = slope > FLAT && slope > half && half <= VAGUE;
     OrderFit {
-        order: meant.then_some(Order {
-            order: slope,
-            low: slope - half,
-            high: slope + half,
-        }),
+        order: falling(&usable),
         points: count,
     }
 }
 
+/// The slope of 4 to 6 logarithms (dt, error), if it is one: not a plateau, and known to ±0.5.
+pub(super) fn falling(logs: &[[f64; 2]]) -> Option<Order> {
+    let (slope, error) = slope(logs);
+    let half = STUDENT.get(logs.len().checked_sub(POINTS_MIN)?)? * error;
+    let meant = slope > FLAT && slope > half && half <= VAGUE;
+    meant.then_some(Order {
+        order: slope,
+        low: slope - half,
+        high: slope + half,
+    })
+}
+
 /// Least squares: the slope and its standard error.
-fn slope(points: &[[f64; 2]]) -> (f64, f64) {
+pub(super) fn slope(points: &[[f64; 2]]) -> (f64, f64) {
     let mut count = 0.0;
     let mut mean = [0.0; 2];
     for point in points {
@@ -103,93 +104,6 @@ fn slope(points: &[[f64; 2]]) -> (f64, f64) {
     let residual = |[x, y]: &[f64; 2]| (y - mean[1] - slope * (x - mean[0])).powi(2);
     let squares: f64 = points.iter().map(residual).sum();
     (slope, (squares / (count - 2.0) / xx).sqrt())
-}
-
-/// What is left of an error as the step goes to 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Remainder {
-    /// It stays: the engine computes another model.
-    Model,
-    /// It shrinks with the step.
-    Discretisation,
-    /// It is at the floor of the arithmetic.
-    Rounding,
-    /// Neither, within this budget: it jumps or grows.
-    Unsettled,
-}
-
-impl Remainder {
-    /// The word of the verdict.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Model => "model",
-            Self::Discretisation => "discretisation",
-            Self::Rounding => "rounding",
-            Self::Unsettled => "unsettled",
-        }
-    }
-}
-
-/// The limit of an error for dt -> 0, estimated from the finest steps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
-    /// What kind of error is left.
-    pub kind: Remainder,
-    /// The slope over the finest steps; none at the floor.
-    pub slope: Option<f64>,
-    /// Error at the finest step.
-    pub finest: f64,
-    /// Whether each of the finest steps errs less than the one before.
-    pub falls: bool,
-}
-
-/// Reads the limit from the four finest steps; none with fewer points.
-///
-/// Equation: error = c dt^p. p above 1/4 is a slope, below -1/4 no limit, between a plateau;
-/// the floor comes first, where the finest error is below it.
-#[must_use]
-pub fn limit(points: &[[f64; 2]], floor: f64) -> Option<Limit> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let finest = sorted.first()?[1];
-    if finest <= floor {
-        return Some(Limit {
-            kind: Remainder::Rounding,
-            slope: None,
-            finest,
-            falls: false,
-        });
-    }
-    if sorted.len() < LIMIT_POINTS {
-        return None;
-    }
-    let above = sorted.iter().take(LIMIT_POINTS);
-    let logs: Vec<[f64; 2]> = above
-        .filter(|point| point[1] > 0.0)
-        .map(|point| point.map(f64::ln))
-        .collect();
-    if logs.len() < LIMIT_POINTS {
-        return None;
-    }
-    let (slope, _) = slope(&logs);
-    // Four errors on one level: a plateau whatever the slope of their small changes.
-    let spread = logs.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max)
-        - logs.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
-    let kind = if slope.abs() <= FLAT && spread <= 1.0 {
-        Remainder::Model
-    } else if slope > FLAT {
-        Remainder::Discretisation
-    } else {
-        Remainder::Unsettled
-    };
-    Some(Limit {
-        kind,
-        slope: Some(slope),
-        finest,
-        falls: logs.windows(2).all(|pair| pair[0][1] < pair[1][1]),
-    })
 }
 
 #[cfg(test)]
@@ -214,7 +128,7 @@ mod tests {
             let fit = fit_order(&series(10, |dt| 3.0 * dt.powf(order)), ALL);
             let found = fit.order.unwrap();
             assert!((found.order - order).abs() < 1e-9, "{found:?}");
-            assert!(found.high - found.low < 1e-6 && fit.points == 8);
+            assert!(found.high - found.low < 1e-6 && fit.points == 6);
         }
     }
 
@@ -240,8 +154,8 @@ mod tests {
         };
         let fit = fit_order(&points, window);
         assert!((fit.order.unwrap().order - 2.0).abs() < 1e-9);
-        // dt = 1/2 ... 1/128: above 2e-5 and below 0.3.
-        assert_eq!(fit.points, 7);
+        // The finest six of dt = 1/2 ... 1/128, which are above 2e-5 and below 0.3.
+        assert_eq!(fit.points, 6);
         assert_ne!(
             fit_order(&points, ALL).order.map(|o| o.order),
             fit.order.map(|o| o.order)
@@ -260,17 +174,5 @@ mod tests {
             }
         });
         assert_eq!(fit_order(&jumps, ALL).order, None);
-    }
-
-    #[test]
-    fn plateau_slope_and_floor_have_their_words() {
-        let kind = |error: &dyn Fn(f64) -> f64| limit(&series(9, error), 1e-12).unwrap().kind;
-        assert_eq!(kind(&|dt| 0.5 + dt), Remainder::Model);
-        assert_eq!(kind(&|dt| dt), Remainder::Discretisation);
-        assert_eq!(kind(&|dt| 1e-3 * dt.powi(4) + 1e-13), Remainder::Rounding);
-        assert_eq!(kind(&|dt| 1.0 / dt), Remainder::Unsettled);
-        assert_eq!(limit(&series(3, |dt| dt), 0.0), None);
-        let falls = |error: &dyn Fn(f64) -> f64| limit(&series(9, error), 0.0).unwrap().falls;
-        assert!(falls(&|dt| dt) && !falls(&|_| 1.0));
     }
 }

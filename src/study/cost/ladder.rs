@@ -22,8 +22,7 @@ pub struct Rung {
 /// first rung beyond the `budget` ends the ladder and is marked.
 #[must_use]
 pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
-    let bodies = scene.bodies.len() as u64;
-    let a_step = bodies + bodies * bodies.saturating_sub(1) / 2;
+    let a_step = work_a_step(scene);
     let samples = scene.sample_count() as u64;
     let mut rungs = Vec::new();
     for power in 0..RUNGS_MAX {
@@ -44,6 +43,12 @@ pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
         }
     }
     rungs
+}
+
+/// The work that a step of any engine is counted as: bodies and pairs.
+pub(super) fn work_a_step(scene: &Scene) -> u64 {
+    let bodies = scene.bodies.len() as u64;
+    bodies + bodies * bodies.saturating_sub(1) / 2
 }
 
 #[cfg(test)]

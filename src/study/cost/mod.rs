@@ -1,47 +1,59 @@
 //! What accuracy costs in time: every engine over a ladder of steps, priced and judged.
 
-mod bootstrap;
 mod contender;
+mod cuts;
 mod fit;
 mod front;
 mod ladder;
+mod limit;
+mod limit_row;
 mod machine;
 mod orders;
+mod phases;
 mod price_tag;
+mod push_out;
 mod reference;
 mod sensitivity;
-mod stopwatch;
+mod series;
+mod summary;
 mod survey;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
-pub use bootstrap::{Ratio, paired_ratio};
 pub use contender::{Contender, STOCK, contenders};
-pub use fit::{Limit, Order, OrderFit, Remainder, Window, fit_order, limit};
+pub use cuts::StepCost;
+pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};
+pub use limit::{PHASES_MIN, limit};
+pub use limit_row::LimitRow;
 pub use machine::Machine;
-pub use orders::{OrderRow, Verdict};
-pub use price_tag::{Comparison, PriceTag, targets};
+pub use orders::{EngineLimit, OrderRow};
+pub use phases::Phase;
+pub use price_tag::{Comparison, MAIN_TARGET, PriceTag, Target, targets};
+pub use push_out::{Left, PushOut, PushOutRung};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
-pub use stopwatch::Price;
+pub use series::Series;
+pub use summary::{Bid, CostSummary, Family, Offer, SceneCostSummary, TagSummary};
 pub use survey::scene_cost;
 
-use super::Refusal;
+use serde::{Deserialize, Serialize};
+
+use super::{Price, Refusal, Timing};
 use crate::engine::EngineSpec;
 use crate::recording::Outcome;
 use crate::scene::Scene;
 
 /// How a study of cost is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CostOptions {
-    /// Seed of the order of runs and of the intervals.
-    pub seed: u64,
-    /// Rounds of timing, the warm-up not counted.
-    pub repetitions: usize,
+    /// How prices are taken.
+    pub timing: Timing,
     /// Work that one run may take, in steps x (bodies + pairs).
     pub budget: u64,
+    /// Later starts from which every engine runs again, unpriced: phases of the step.
+    pub phases: usize,
 }
 
 /// What a study is doing.
@@ -51,8 +63,12 @@ pub enum Stage {
     Reference,
     /// Every run is recorded and compared.
     Errors,
+    /// Every engine runs again from later starts.
+    Phases,
     /// Every run is timed.
     Pricing,
+    /// Runs with and without push-out are compared and timed.
+    PushOut,
 }
 
 /// Is told the stage, how much of it is done, and of how much.
@@ -152,6 +168,12 @@ pub struct SceneCost {
     pub engines: Vec<EngineCost>,
     /// Every run, by engine, setting and step from coarse to fine.
     pub points: Vec<CostPoint>,
+    /// What a step of the engines that take steps costs with more and more of the bodies.
+    pub step_costs: Vec<StepCost>,
+    /// The engines that take steps, from later starts; empty without a common reference.
+    pub phases: Vec<Phase>,
+    /// What push-out does and costs, for each engine that has it.
+    pub push_out: Vec<PushOut>,
     /// Engines that cannot do the scene.
     pub refusals: Vec<Refusal>,
     /// What the reader must know.
@@ -163,5 +185,15 @@ impl SceneCost {
     pub fn stock(&self, engine: &str) -> impl Iterator<Item = &CostPoint> {
         let of_engine = move |point: &&CostPoint| point.engine == engine && point.is_stock();
         self.points.iter().filter(of_engine)
+    }
+
+    /// What a run that was priced counted in a simulated second: steps, forces, pairs.
+    #[must_use]
+    pub fn work_per_sim_s(&self, point: &CostPoint) -> Option<[f64; 3]> {
+        let work = point.price.as_ref()?.work;
+        let counts = [work.steps, work.force_evaluations, work.pair_tests];
+        #[allow(clippy::cast_precision_loss, reason = "counts far below 2^53")]
+        let rates = counts.map(|count| count as f64 / self.priced_until);
+        Some(rates)
     }
 }

@@ -1,8 +1,12 @@
-//! Orders of convergence and verdicts of a study: each engine as it comes.
+//! Orders of convergence and limits for dt -> 0 of a study: each engine as it comes.
 
+use serde::{Deserialize, Serialize};
+
+use super::limit::ROUNDINGS;
 use super::{
-    CostPoint, Errors, Limit, OrderFit, Remainder, SceneCost, Sensitivity, Window, fit_order, limit,
+    CostPoint, Errors, OrderFit, SceneCost, Sensitivity, Series, Window, fit_order, limit,
 };
+use crate::compare::Limit;
 use crate::engine::{EngineKind, EngineSpec, Precision};
 
 /// A fitted error, a row of `orders.csv`.
@@ -16,15 +20,13 @@ pub struct OrderRow {
     pub fit: OrderFit,
 }
 
-/// What is left of an engine's position error as the step goes to 0.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
+/// The limit of an engine's position error as the step goes to 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EngineLimit {
     /// The engine.
     pub engine: String,
-    /// The limit; none if there are too few points.
+    /// The limit; none if there are too few steps, or no later starts.
     pub limit: Option<Limit>,
-    /// Below this, an error is rounding, scene length unit.
-    pub floor: f64,
 }
 
 /// An error by the name of its column, whether it is a length, and how it is found.
@@ -46,13 +48,8 @@ const MEASURES: [Measure; 5] = [
     ("local_error", Unit::Length, |e| e.local),
 ];
 
-/// Rounding of this many operations adds up before an error counts as more than rounding.
-const ROUNDINGS: f64 = 64.0;
 /// Errors above this share of the size are those of steps that are not small.
 const SMALL: f64 = 0.02;
-
-/// Large errors count as shrinking only if they fall at least about so steeply.
-const STEEP: f64 = 0.7;
 
 /// Rounding of one operation in the numbers that an engine computes with.
 fn epsilon(spec: &EngineSpec) -> f64 {
@@ -68,60 +65,56 @@ impl SceneCost {
     /// The order of every error of every engine that takes steps.
     #[must_use]
     pub fn orders(&self) -> Vec<OrderRow> {
-        let stepping = self
-            .engines
-            .iter()
-            .filter(|engine| engine.spec.takes_steps());
-        let rows = stepping.flat_map(|engine| {
+        let rows = self.stepping().flat_map(|spec| {
             MEASURES.iter().map(|(error, unit, value)| OrderRow {
-                engine: engine.spec.name.clone(),
+                engine: spec.name.clone(),
                 error,
                 fit: fit_order(
-                    &self.series(&engine.spec.name, *value),
-                    self.window(&engine.spec, *unit),
+                    &self.series(&spec.name, *value).rms(),
+                    self.window(spec, *unit),
                 ),
             })
         });
         rows.collect()
     }
 
-    /// The verdict on every engine that takes steps: model, discretisation or rounding.
+    /// What is left of the largest position error of every engine that takes steps: model,
+    /// discretisation or rounding. The seed is that of the intervals.
     #[must_use]
-    pub fn verdicts(&self) -> Vec<Verdict> {
-        let stepping = self
-            .engines
-            .iter()
-            .filter(|engine| engine.spec.takes_steps());
-        let verdict = |spec: &EngineSpec| {
-            let floor = self.window(spec, Unit::Length).floor;
+    pub fn limits(&self, seed: u64) -> Vec<EngineLimit> {
+        let of_engine = |spec: &EngineSpec| {
             let series = self.series(&spec.name, |errors| errors.position_max);
-            let limit = limit(&series, floor).map(|limit| self.sober(limit));
-            Verdict {
+            EngineLimit {
                 engine: spec.name.clone(),
-                limit,
-                floor,
+                limit: limit(
+                    &series,
+                    self.window(spec, Unit::Length),
+                    self.scene.duration,
+                    seed,
+                ),
             }
         };
-        stepping.map(|engine| verdict(&engine.spec)).collect()
+        self.stepping().map(of_engine).collect()
     }
 
-    /// Errors that are not small tell nothing of the limit unless they fall from step to step:
-    /// the engine does not yet tell the same story as the reference.
-    fn sober(&self, limit: Limit) -> Limit {
-        let is_small = limit.finest <= SMALL * self.size;
-        let is_steady = limit.falls && limit.slope > Some(STEEP);
-        let kind = match limit.kind {
-            Remainder::Model if !is_small => Remainder::Unsettled,
-            Remainder::Discretisation if !is_small && !is_steady => Remainder::Unsettled,
-            kind => kind,
-        };
-        Limit { kind, ..limit }
+    fn stepping(&self) -> impl Iterator<Item = &EngineSpec> {
+        let specs = self.engines.iter().map(|engine| &engine.spec);
+        specs.filter(|spec| spec.takes_steps())
     }
 
-    /// (dt, error) of an engine as it comes.
-    fn series(&self, engine: &str, value: fn(&Errors) -> Option<f64>) -> Vec<[f64; 2]> {
-        let point = |point: &CostPoint| Some([point.dt?, value(&point.errors)?]);
-        self.stock(engine).filter_map(point).collect()
+    /// The errors of an engine as it comes, over all phases; of its one run where no later start
+    /// could be had.
+    fn series(&self, engine: &str, value: fn(&Errors) -> Option<f64>) -> Series {
+        if self.phases.is_empty() {
+            let point = |point: &CostPoint| Some((point.dt?, value(&point.errors)));
+            return Series::new(&[self.stock(engine).filter_map(point).collect()]);
+        }
+        let phases = self.phases.iter();
+        Series::new(
+            &phases
+                .map(|phase| phase.errors(engine, value))
+                .collect::<Vec<_>>(),
+        )
     }
 
     /// Rounding of the scene's size, carried along and made larger as a misplaced ball is.
@@ -150,8 +143,29 @@ impl SceneCost {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Phase;
     use super::super::testing::study;
     use super::*;
+    use crate::compare::Remainder;
+
+    /// Seven phases at which an engine's error is larger and larger.
+    fn with_phases(mut study: SceneCost) -> SceneCost {
+        study.phases = (0..7)
+            .map(|place| {
+                let later = |point: &CostPoint| {
+                    let mut point = point.clone();
+                    let factor = 1.0 + 0.01 * f64::from(place);
+                    point.errors.position_max = point.errors.position_max.map(|e| e * factor);
+                    point
+                };
+                Phase {
+                    shift: f64::from(place),
+                    points: study.points.iter().map(later).collect(),
+                }
+            })
+            .collect();
+        study
+    }
 
     #[test]
     fn each_engine_has_its_order_and_its_word() {
@@ -160,17 +174,16 @@ mod tests {
         };
         let first = ladder(&|dt| 10.0 * dt);
         let other = ladder(&|dt| 3.0 + dt);
-        let wild = ladder(&|_| 900.0);
-        let study = study(&[
+        let wild = ladder(&|dt| 500.0 + 400.0 * (1.0 / dt).sin());
+        let alone = study(&[
             ("first", "stock", &first),
             ("other", "stock", &other),
             ("wild", "stock", &wild),
         ]);
-        let kinds: Vec<_> = study
-            .verdicts()
-            .iter()
-            .map(|v| v.limit.unwrap().kind)
-            .collect();
+        assert!(alone.limits(1).iter().all(|row| row.limit.is_none()));
+        let study = with_phases(alone.clone());
+        let limits = study.limits(1);
+        let kinds: Vec<_> = limits.iter().map(|row| row.limit.unwrap().kind).collect();
         assert_eq!(
             kinds,
             [
@@ -179,15 +192,17 @@ mod tests {
                 Remainder::Unsettled
             ]
         );
-        let orders = study.orders();
-        let of = |engine: &str| {
-            let row = orders
-                .iter()
-                .find(|row| row.engine == engine && row.error == "position_error_max");
-            row.unwrap().fit.order
-        };
-        assert!((of("first").unwrap().order - 1.0).abs() < 1e-9);
-        assert_eq!((of("other"), of("wild")), (None, None));
-        assert_eq!(orders.len(), 15);
+        for study in [&alone, &study] {
+            let orders = study.orders();
+            let of = |engine: &str| {
+                let row = orders
+                    .iter()
+                    .find(|row| row.engine == engine && row.error == "position_error_max");
+                row.unwrap().fit.order
+            };
+            assert!((of("first").unwrap().order - 1.0).abs() < 1e-9);
+            assert_eq!((of("other"), of("wild")), (None, None));
+            assert_eq!(orders.len(), 15);
+        }
     }
 }

@@ -1,19 +1,41 @@
 //! The price tag: the cheapest way to an accuracy, and the accuracy for a price.
 
-use super::bootstrap::{Ratio, paired_ratio};
 use super::{CostPoint, Ending, SceneCost};
 use crate::scene::LengthUnit;
+use crate::study::{Price, Ratio, paired_ratio};
 
-/// Targets of scenes with a unit of length, m: 10, 1, 0.1 and 0.001 mm.
-const TARGETS_M: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+/// Targets of scenes with a unit of length, m.
+const TARGETS_M: [(f64, &str); 4] = [
+    (1e-2, "10 mm"),
+    (1e-3, "1 mm"),
+    (1e-4, "0.1 mm"),
+    (1e-6, "0.001 mm"),
+];
 /// Targets of scenes without one, shares of the size.
-const TARGET_SHARES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+const TARGET_SHARES: [(f64, &str); 5] = [
+    (1e-2, "1e-2 of the size"),
+    (1e-3, "1e-3 of the size"),
+    (1e-4, "1e-4 of the size"),
+    (1e-5, "1e-5 of the size"),
+    (1e-6, "1e-6 of the size"),
+];
+/// The target that stands for all where one must: 1 mm, or a thousandth of the size.
+pub const MAIN_TARGET: usize = 1;
+
+/// An accuracy that prices are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// Largest position error allowed, scene length unit.
+    pub length: f64,
+    /// How it is called, the same in every unit.
+    pub name: &'static str,
+}
 
 /// What one accuracy costs.
 #[derive(Debug, Clone)]
 pub struct PriceTag<'a> {
-    /// Largest position error allowed, scene length unit.
-    pub target: f64,
+    /// The accuracy.
+    pub target: Target,
     /// Each engine that was priced, in the order of the study: its cheapest point that keeps
     /// the target; none if it has none.
     pub cheapest: Vec<(&'a str, Option<&'a CostPoint>)>,
@@ -41,7 +63,7 @@ impl PriceTag<'_> {
         let Some((winner, least)) = kept().min_by(|a, b| a.1.median.total_cmp(&b.1.median)) else {
             return Vec::new();
         };
-        let against = |(engine, price): (_, &super::Price)| Comparison {
+        let against = |(engine, price): (_, &Price)| Comparison {
             engine,
             cheapest: winner,
             ratio: paired_ratio(&price.rounds, &least.rounds, seed),
@@ -53,24 +75,29 @@ impl PriceTag<'_> {
     }
 }
 
-/// The accuracies that a scene's prices are asked for, scene length unit.
+/// The accuracies that a scene's prices are asked for, from coarse to fine.
 #[must_use]
-pub fn targets(unit: LengthUnit, size: f64) -> Vec<f64> {
-    match unit {
-        LengthUnit::None => TARGET_SHARES.map(|share| share * size).to_vec(),
+pub fn targets(unit: LengthUnit, size: f64) -> Vec<Target> {
+    let (all, whole): (&[(f64, &'static str)], f64) = match unit {
+        LengthUnit::None => (&TARGET_SHARES, size),
         LengthUnit::Millimetre | LengthUnit::Centimetre | LengthUnit::Metre => {
-            TARGETS_M.map(|target| target * unit.per_metre()).to_vec()
+            (&TARGETS_M, unit.per_metre())
         }
-    }
+    };
+    let target = |(share, name): &(f64, &'static str)| Target {
+        length: share * whole,
+        name,
+    };
+    all.iter().map(target).collect()
 }
 
 impl SceneCost {
     /// The price tags of all targets.
     #[must_use]
     pub fn price_tags(&self) -> Vec<PriceTag<'_>> {
-        let tag = |target: f64| PriceTag {
+        let tag = |target: Target| PriceTag {
             target,
-            cheapest: self.per_engine(|engine| self.cheapest(engine, target)),
+            cheapest: self.per_engine(|engine| self.cheapest(engine, target.length)),
         };
         let targets = targets(self.scene.units.length, self.size);
         targets.into_iter().map(tag).collect()
@@ -150,9 +177,14 @@ mod tests {
 
     #[test]
     fn targets_follow_the_unit() {
-        assert_eq!(targets(LengthUnit::Millimetre, 5.0), [10.0, 1.0, 0.1, 1e-3]);
-        assert_eq!(targets(LengthUnit::Metre, 5.0), [1e-2, 1e-3, 1e-4, 1e-6]);
-        assert_eq!(targets(LengthUnit::None, 50.0)[0], 0.5);
+        let lengths = |unit, size| -> Vec<f64> {
+            let targets = targets(unit, size);
+            targets.iter().map(|target| target.length).collect()
+        };
+        assert_eq!(lengths(LengthUnit::Millimetre, 5.0), [10.0, 1.0, 0.1, 1e-3]);
+        assert_eq!(lengths(LengthUnit::Metre, 5.0), [1e-2, 1e-3, 1e-4, 1e-6]);
+        assert_eq!(lengths(LengthUnit::None, 50.0)[0], 0.5);
+        assert_eq!(targets(LengthUnit::Metre, 5.0)[MAIN_TARGET].name, "1 mm");
     }
 
     /// 20 mm, 0.5 mm by luck, 2 mm, 0.9 mm: the lucky step does not count for 1 mm.
@@ -162,7 +194,7 @@ mod tests {
         let study = study(&[("a", "stock", &errors)]);
         let tags = study.price_tags();
         let cost = |tag: &PriceTag| tag.cheapest[0].1.and_then(CostPoint::cost);
-        assert_eq!(tags[0].target, 10.0);
+        assert_eq!(tags[0].target.length, 10.0);
         assert_eq!(cost(&tags[0]), Some(2.0));
         assert_eq!(cost(&tags[1]), Some(8.0));
         assert_eq!(cost(&tags[2]), None);

@@ -140,23 +140,38 @@ impl Reference {
         }
     }
 
-    /// The engine put on the reference at each sample and advanced by one: the largest distance.
+    /// The engine put on the reference at each sample and advanced by one, up to the horizon: its
+    /// sample n comes from the reference's n - 1. None if it does not get through.
     ///
     /// # Errors
     /// As [`prepare`].
-    pub fn local_error(&self, scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Option<f64>> {
+    pub fn one_by_one(
+        &self,
+        scene: &Scene,
+        spec: &EngineSpec,
+        dt: f64,
+    ) -> Result<Option<Recording>> {
         let mut simulation = prepare(scene, spec, dt)?;
         let mut states = initial_states(scene);
-        let mut largest: f64 = 0.0;
+        let mut hops = Recording::at_start(&spec.name, scene);
         for sample in 1..self.comparable {
             simulation.set_state(sample - 1, self.recording.sample(sample - 1));
             if simulation.advance_to(sample, None).is_some() {
                 return Ok(None);
             }
             simulation.state_into(&mut states);
-            largest = largest.max(distance(&states, self.recording.sample(sample)));
+            hops.push(&states);
         }
-        Ok(finite(largest))
+        Ok(Some(hops))
+    }
+
+    /// The largest distance after one sample that starts on the reference, scene length unit.
+    ///
+    /// # Errors
+    /// As [`prepare`].
+    pub fn local_error(&self, scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Option<f64>> {
+        let hops = self.one_by_one(scene, spec, dt)?;
+        Ok(hops.and_then(|hops| self.distance(&hops)))
     }
 
     /// The largest distance of another recording up to the horizon, scene length unit.

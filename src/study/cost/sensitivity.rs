@@ -1,5 +1,7 @@
 //! Where accuracy stops mattering: what a ball placed a little off does to the answer.
 
+use serde::{Deserialize, Serialize};
+
 use super::reference::Reference;
 use crate::engine::{engine, record};
 use crate::scene::{LengthUnit, Scene};
@@ -10,7 +12,7 @@ const MISPLACED_M: f64 = 1e-4;
 const MISPLACED_SHARE: f64 = 1e-4;
 
 /// What moving one ball at the start does.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// Name of the ball.
     pub body: String,

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::contender::{Contender, contenders};
+use super::cuts::step_costs;
 use super::ladder::{Rung, ladder};
-use super::stopwatch::{Job, Price, Stretch, prices};
+use super::phases::phases;
+use super::push_out::push_out;
 use super::{
     CostOptions, CostPoint, Ending, EngineCost, Errors, Reference, SceneCost, Stage, Watcher,
     sensitivity,
@@ -16,9 +18,10 @@ use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::scene::Scene;
 use crate::study::Refusal;
+use crate::study::stopwatch::{Job, prices};
 
 /// A contender on one rung of its ladder.
-struct Run<'a> {
+pub(super) struct Run<'a> {
     contender: &'a Contender,
     rung: Rung,
 }
@@ -67,20 +70,40 @@ pub fn scene_cost(
     let sample = reference
         .as_ref()
         .map_or(scene.sample_count(), |known| known.rest_sample(scene));
-    let stretch = Stretch {
-        sample,
-        seconds: scene.sample_time(sample),
-    };
     let (mut points, size) = errors;
-    price(&mut points, &runs, stretch, options, watch)?;
+    let stepping: Vec<&EngineSpec> = engines
+        .iter()
+        .map(|engine| &engine.spec)
+        .filter(|spec| spec.takes_steps())
+        .collect();
+    let phases = match &reference {
+        Some(known) => phases(scene, &stepping, known, options, watch)?,
+        None => Vec::new(),
+    };
+    if reference.is_some() && phases.len() < options.phases {
+        notes.push(format!(
+            "Of {} later starts exact could take {}.",
+            options.phases,
+            phases.len()
+        ));
+    }
+    price(&mut points, &runs, sample, options, watch)?;
+    let step_costs = step_costs(scene, specs, sample, options)?;
+    let push_out = match &reference {
+        Some(known) => push_out(scene, &stepping, known, sample, options, watch)?,
+        None => Vec::new(),
+    };
     Ok(SceneCost {
         scene: scene.clone(),
         size,
         compared_until: reference.as_ref().map(|known| known.until(scene)),
-        priced_until: stretch.seconds,
+        priced_until: scene.sample_time(sample),
         sensitivity: off,
         engines,
         points,
+        step_costs,
+        phases,
+        push_out,
         refusals,
         notes,
     })
@@ -127,7 +150,7 @@ fn taking_part(scene: &Scene, specs: &[EngineSpec], options: &CostOptions) -> Re
 }
 
 /// Every contender on its ladder; engines without steps run once.
-fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> {
+pub(super) fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> {
     let of = |contender: &'a Contender| {
         let rungs = if contender.spec.takes_steps() {
             ladder(&contender.scene, options.budget)
@@ -144,7 +167,7 @@ fn runs<'a>(contenders: &'a [Contender], options: &CostOptions) -> Vec<Run<'a>> 
 }
 
 /// Records every run and compares it; also gives the size of the scene.
-fn errors(
+pub(super) fn errors(
     scene: &Scene,
     runs: &[Run],
     reference: Option<&Reference>,
@@ -244,11 +267,11 @@ fn point(run: &Run, ending: Ending, errors: Errors) -> CostPoint {
     }
 }
 
-/// Prices the runs that finished.
+/// Prices the runs that finished, up to a sample.
 fn price(
     points: &mut [CostPoint],
     runs: &[Run],
-    stretch: Stretch,
+    sample: usize,
     options: &CostOptions,
     watch: Watcher,
 ) -> Result<()> {
@@ -258,13 +281,18 @@ fn price(
         .filter(|(point, _)| finished(point))
         .map(|(point, run)| {
             let job = Job {
-                contender: run.contender,
+                scene: &run.contender.scene,
+                spec: &run.contender.spec,
                 dt: run.rung.dt,
+                from: 0,
+                to: sample,
             };
             (point, job)
         })
         .unzip();
-    let found: Vec<Price> = prices(&jobs, stretch, options, watch)?;
+    let found = prices(&jobs, options.timing, &|done, all| {
+        watch(Stage::Pricing, done, all);
+    })?;
     for (point, price) in priced.into_iter().zip(found) {
         point.price = Some(price);
     }
@@ -275,11 +303,15 @@ fn price(
 mod tests {
     use super::*;
     use crate::engine::engine;
+    use crate::study::Timing;
 
     const OPTIONS: CostOptions = CostOptions {
-        seed: 1,
-        repetitions: 1,
+        timing: Timing {
+            seed: 1,
+            repetitions: 1,
+        },
         budget: 100,
+        phases: 3,
     };
 
     fn study(text: &str, names: &[&str]) -> SceneCost {
@@ -311,7 +343,7 @@ mod tests {
         );
         let exact = cost.stock("exact-fast").next().unwrap();
         assert!(exact.dt.is_none() && exact.error().unwrap() < 1e-12);
-        assert_eq!(cost.verdicts().len(), 1);
+        assert_eq!(cost.limits(1).len(), 1);
     }
 
     /// Rest together with gravity is undefined for `exact`: the finest step stands in.

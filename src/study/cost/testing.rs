@@ -1,15 +1,18 @@
 //! What the tests of the study share.
 
-use super::{CostPoint, Ending, EngineCost, Errors, Price, SceneCost};
+use super::{
+    Bid, CostOptions, CostPoint, CostSummary, Ending, EngineCost, Errors, Family, Offer, SceneCost,
+    SceneCostSummary, TagSummary,
+};
 use crate::engine::engine;
-use crate::recording::Outcome;
+use crate::recording::{Outcome, Work};
+use crate::study::{Price, Timing};
 
 /// Engine, setting, and (error, cost) from coarse to fine.
-pub(super) type Ladder<'a> = (&'a str, &'a str, &'a [(f64, f64)]);
+pub(crate) type Ladder<'a> = (&'a str, &'a str, &'a [(f64, f64)]);
 
-/// A study with ladders with steps from 1 s
-/// down by halves, on a scene in millimetres.
-pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
+/// A study with ladders of steps from 1 s down by halves, on a scene in millimetres.
+pub(crate) fn study(ladders: &[Ladder]) -> SceneCost {
     let text = "name='x'\nduration=1\nsample_every=1\n[units]\nlength='mm'\n\
         [[bodies]]\nname='a'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[0,0,0]\n";
     let scene = crate::scene::parse(text, "x").unwrap();
@@ -35,12 +38,7 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
                     position_max: Some(*error),
                     ..Errors::default()
                 },
-                price: Some(Price {
-                    rounds: vec![*cost; 5],
-                    median: *cost,
-                    min: *cost,
-                    steps: 1,
-                }),
+                price: Some(Price::new(vec![*cost; 7], Work::default())),
                 ending: Ending::Ran(Outcome::Finished),
             });
             dt /= 2.0;
@@ -54,7 +52,50 @@ pub(super) fn study(ladders: &[Ladder]) -> SceneCost {
         sensitivity: None,
         engines,
         points,
+        step_costs: Vec::new(),
+        phases: Vec::new(),
+        push_out: Vec::new(),
         refusals: Vec::new(),
         notes: Vec::new(),
+    }
+}
+
+/// The summary of a study of one scene in millimetres: engines with their prices from the
+/// coarsest accuracy on, all with a step of 0.01 s.
+pub(crate) fn summary(engines: &[(&str, Family, &[f64])]) -> CostSummary {
+    let cost = study(&[]);
+    let offer = |place: usize| {
+        move |(engine, family, prices): &(&str, Family, &[f64])| Offer {
+            engine: (*engine).to_owned(),
+            family: *family,
+            bid: prices.get(place).map(|price| Bid {
+                setting: super::STOCK.to_owned(),
+                dt_s: Some(0.01),
+                cost_ms_per_sim_s: *price,
+                position_error_max: 1e-4,
+            }),
+        }
+    };
+    let scene = SceneCostSummary::of(&cost, 1).unwrap();
+    let tags = scene.tags.into_iter().enumerate();
+    let tags = tags.map(|(place, tag)| TagSummary {
+        offers: engines.iter().map(offer(place)).collect(),
+        ..tag
+    });
+    let scene = SceneCostSummary {
+        tags: tags.collect(),
+        ..scene
+    };
+    let options = CostOptions {
+        timing: Timing {
+            seed: 1,
+            repetitions: 5,
+        },
+        phases: 3,
+        budget: 1000,
+    };
+    CostSummary {
+        scenes: vec![scene],
+        ..CostSummary::begin(options)
     }
 }

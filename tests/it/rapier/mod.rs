@@ -2,6 +2,7 @@
 
 mod impacts;
 mod range;
+mod repeat;
 mod worlds;
 
 use carom::engine::{engine, record};

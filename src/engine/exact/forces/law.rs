@@ -7,7 +7,7 @@ use crate::scene::Scene;
 ///
 /// Equation: on body a, `(offset + scale (d² + s²)^power) d + damping (v_b - v_a)` with d from
 /// a to b; the opposite on b. Attraction: `offset = 0`, `scale = G m_a m_b`, `power = -3/2`.
-/// Spring: `offset = k`, `scale = -k l0`, `power = -1/2`, s = 0.
+/// Spring: `offset = k`, `scale = -k l0`, `power = -1/2`, s = 0 where there is a scale.
 /// Source: lecture, `computeAttraction()`; "스프링과 댐퍼" (springs and dampers), "최종 모델".
 #[derive(Debug, Clone)]
 pub(super) struct Link<T> {
@@ -85,7 +85,9 @@ impl<T: Real> Law<T> {
                 offset: stiffness,
                 scale: -(stiffness * T::from_f64(spring.rest_length)),
                 damping: (spring.damping != 0.0).then(|| T::from_f64(spring.damping)),
-                softening_squared: T::zero(),
+                // A spring of no rest length has no power of the distance; any softening keeps
+                // the power that its scale of 0 takes away finite, through coincident ends too.
+                softening_squared: T::from_f64(if spring.rest_length == 0.0 { 1.0 } else { 0.0 }),
             });
         }
         let drag = effects.drag.filter(|drag| drag.coefficient != 0.0);

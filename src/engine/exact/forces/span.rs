@@ -14,7 +14,8 @@ const STILL: f64 = 1e-4;
 /// Equation: `|c_k| u^k <= tolerance max(|c_1| u, |c_2| u², STILL |c_0|)`, k the order and one
 /// less (one of the two may vanish by symmetry). Measuring on links makes it blind to a common
 /// motion, which is no reason for small steps; for the bodies' own paths `c_0` is the longest
-/// link.
+/// link. Where rounding leaves both terms of a link at exactly zero, as it does by chance on a
+/// stiff spring that swings far, its last term above the parabola that is not zero stands in.
 /// Source: Jorba and Zou 2005, section 3.2, with their absolute norm made relative.
 pub(super) fn span<T: Real>(series: &Series<T>, law: &Law<T>, tolerance: f64) -> f64 {
     let order = series.order();
@@ -31,10 +32,7 @@ pub(super) fn span<T: Real>(series: &Series<T>, law: &Law<T>, tolerance: f64) ->
             if last == 0.0 || (span.is_finite() && last * power <= within) {
                 return;
             }
-            let reach = |scale: f64, missing: usize| {
-                (tolerance * scale / last).powf(1.0 / as_real(k - missing))
-            };
-            span = reach(still, 0).max(reach(first, 1)).max(reach(second, 2));
+            span = reach(tolerance, k, last, scale);
             power = span.powf(as_real(k));
         };
         for link in &law.links {
@@ -48,5 +46,23 @@ pub(super) fn span<T: Real>(series: &Series<T>, law: &Law<T>, tolerance: f64) ->
             tighten(length(k), [STILL * typical, length(1), length(2)]);
         }
     }
+    for link in &law.links {
+        let [a, b] = link.ends;
+        let length = |k: usize| size(&minus(&x[k][b], &x[k][a]));
+        if length(order - 1) == 0.0
+            && length(order) == 0.0
+            && let Some(k) = (3..order - 1).rev().find(|k| length(*k) != 0.0)
+        {
+            let scale = [STILL * length(0), length(1), length(2)];
+            span = span.min(reach(tolerance, k, length(k), scale));
+        }
+    }
     span
+}
+
+/// The largest u such that `last u^k <= tolerance max(still, first u, second u²)`.
+fn reach(tolerance: f64, k: usize, last: f64, [still, first, second]: [f64; 3]) -> f64 {
+    let reach =
+        |scale: f64, missing: usize| (tolerance * scale / last).powf(1.0 / as_real(k - missing));
+    reach(still, 0).max(reach(first, 1)).max(reach(second, 2))
 }

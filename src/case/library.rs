@@ -1,13 +1,10 @@
-//! A case: a scene with what independent evidence there is about it.
-//!
-//! Names resolve in the folder `reference/` (or another one), else among the cases that are
-//! compiled in.
+//! Where cases come from, and how one is read.
 
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
-use serde::Serialize;
 
+use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH};
 use crate::error::{Error, Result};
 use crate::physics::Vector3;
 use crate::recording::{
@@ -16,22 +13,7 @@ use crate::recording::{
 use crate::scene::{self, Scene};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
-
-/// The name of the voice of independent truth.
-pub const TRUTH: &str = "truth";
-
-/// The heading of `ORIGIN.md` where carom made the truth itself.
-pub const OWN_ORIGIN: &str = "# Origin of the truth: carom's own engine `exact`";
-
-/// Who made the truth of a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Evidence {
-    /// Closed forms or programs that share nothing with carom.
-    Independent,
-    /// The engine `exact`, as far as it certifies; it says nothing about that engine.
-    Own,
-}
+static EMBEDDED_HARD: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/hard");
 
 /// More names than this are no hint any more.
 const HINTS_MAX: usize = 6;
@@ -39,26 +21,18 @@ const HINTS_MAX: usize = 6;
 /// The folder that is looked into when none is named.
 pub const REFERENCE: &str = "reference";
 
-/// A scene, and the truth about it where there is one.
-#[derive(Debug, Clone)]
-pub struct Case {
-    /// The scene.
-    pub scene: Scene,
-    /// A recording with the voice `truth`.
-    pub truth: Option<Recording>,
-    /// Who made it.
-    pub evidence: Option<Evidence>,
-    /// Where the evidence comes from.
-    pub origin: Option<String>,
-}
+/// The folder of the hard cases.
+pub const HARD: &str = "hard";
 
 /// Where cases come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Library {
     /// A folder with a folder a case.
     Folder(PathBuf),
-    /// The cases compiled in.
+    /// The reference cases compiled in.
     Embedded,
+    /// The hard cases compiled in.
+    EmbeddedHard,
 }
 
 impl Library {
@@ -69,6 +43,16 @@ impl Library {
             Some(folder) => Self::Folder(folder.to_owned()),
             None if Path::new(REFERENCE).is_dir() => Self::Folder(REFERENCE.into()),
             None => Self::Embedded,
+        }
+    }
+
+    /// The hard cases: those of `hard/` here if there is one; else the embedded ones.
+    #[must_use]
+    pub fn hard() -> Self {
+        if Path::new(HARD).is_dir() {
+            Self::Folder(HARD.into())
+        } else {
+            Self::EmbeddedHard
         }
     }
 
@@ -89,11 +73,8 @@ impl Library {
                 }
                 names
             }
-            Self::Embedded => EMBEDDED
-                .dirs()
-                .filter(|dir| dir.get_file(dir.path().join("scene.toml")).is_some())
-                .map(|dir| dir.path().display().to_string())
-                .collect(),
+            Self::Embedded => names_in(&EMBEDDED),
+            Self::EmbeddedHard => names_in(&EMBEDDED_HARD),
         };
         names.sort();
         Ok(names)
@@ -124,8 +105,10 @@ impl Library {
             Evidence::Independent
         };
         let truth = self.truth(name, &scene, evidence)?;
+        let expected = self.expected(name, &scene)?;
         Ok(Case {
             scene,
+            expected,
             evidence: truth.is_some().then_some(evidence),
             truth,
             origin: origin.map(|text| without_heading(&text).to_owned()),
@@ -148,6 +131,12 @@ impl Library {
         }
         check_start(scene, &recording, path)?;
         Ok(Some(recording))
+    }
+
+    fn expected(&self, name: &str, scene: &Scene) -> Result<Option<Expected>> {
+        self.file(name, "expected.toml")?
+            .map(|file| Expected::parse(&file.text()?, &file.path, scene))
+            .transpose()
     }
 
     /// The text of a case's scene file, as it stands.
@@ -177,14 +166,8 @@ impl Library {
                     Err(wrong) => Err(Error::read(&path, wrong)),
                 }
             }
-            Self::Embedded => {
-                Ok(EMBEDDED
-                    .get_file(format!("{case}/{file}"))
-                    .map(|found| CaseFile {
-                        path: format!("{case}/{file} (compiled in)"),
-                        bytes: found.contents().to_vec(),
-                    }))
-            }
+            Self::Embedded => Ok(file_in(&EMBEDDED, case, file)),
+            Self::EmbeddedHard => Ok(file_in(&EMBEDDED_HARD, case, file)),
         }
     }
 
@@ -205,6 +188,22 @@ impl Library {
             hint,
         }
     }
+}
+
+/// The names of the cases compiled in.
+fn names_in(embedded: &Dir<'_>) -> Vec<String> {
+    let is_case = |dir: &&Dir<'_>| dir.get_file(dir.path().join("scene.toml")).is_some();
+    let cases = embedded.dirs().filter(is_case);
+    cases.map(|dir| dir.path().display().to_string()).collect()
+}
+
+/// A file of a case compiled in.
+fn file_in(embedded: &Dir<'_>, case: &str, file: &str) -> Option<CaseFile> {
+    let found = embedded.get_file(format!("{case}/{file}"))?;
+    Some(CaseFile {
+        path: format!("{case}/{file} (compiled in)"),
+        bytes: found.contents().to_vec(),
+    })
 }
 
 /// Truth must start where the scene starts, to the rounding of its printed digits.
@@ -255,25 +254,4 @@ impl CaseFile {
             byte: wrong.utf8_error().valid_up_to(),
         })
     }
-}
-
-/// A scene by the path of its file, or a case by its name.
-///
-/// # Errors
-/// Those of reading it, or [`Error::UnknownCase`].
-pub fn scene_or_case(name: &str, library: &Library) -> Result<Case> {
-    let path = Path::new(name);
-    let is_file = path.is_file()
-        || path
-            .extension()
-            .is_some_and(|extension| extension == "toml");
-    if is_file {
-        return Ok(Case {
-            scene: scene::read(path)?,
-            truth: None,
-            evidence: None,
-            origin: None,
-        });
-    }
-    library.case(name)
 }

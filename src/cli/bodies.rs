@@ -1,0 +1,121 @@
+//! `carom cost --bodies`: what a step costs as the number of bodies grows.
+
+use std::path::{Path, PathBuf};
+
+use super::output::{progress, say, warn};
+use crate::engine::{DEFAULT_DT, EngineSpec};
+use crate::error::{Error, Result};
+use crate::report::{Folder, bodies_findings, bodies_table, write_bodies};
+use crate::study::Timing;
+use crate::study::bodies::{BodiesOptions, BodiesStudy, Walls, bodies_cost, joined};
+
+/// Fewer bodies hit nothing, more take hours.
+const BODIES: std::ops::RangeInclusive<usize> = 1..=1_000_000;
+
+/// What the study of numbers of bodies is asked beyond what every study of cost is.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Instead of scenes: a gas of each of these numbers of bodies, at the same density
+    #[arg(
+        long = "bodies",
+        value_name = "NUMBERS",
+        value_delimiter = ',',
+        num_args = 0..=1,
+        default_missing_value = "4,10,30,100,300,1000,3000,10000",
+        conflicts_with = "scenes"
+    )]
+    pub sizes: Vec<usize>,
+    /// Step of the engines, s; with --bodies
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true, requires = "sizes")]
+    dt: f64,
+    /// Share of the box that the spheres fill; with --bodies
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1, requires = "sizes")]
+    filling: f64,
+    /// Take the walls away before the clock starts; with --bodies
+    #[arg(long, requires = "sizes")]
+    open: bool,
+    /// A bodies.csv that another build of carom has measured, to stand beside; with --bodies
+    #[arg(long = "join", value_name = "FILE", requires = "sizes")]
+    joined: Vec<PathBuf>,
+}
+
+/// Work a run may take unless told otherwise: six steps of 10,000 bodies, all pairs.
+const BUDGET: u64 = 300_000_000;
+
+impl Args {
+    /// Makes the study.
+    pub fn run(
+        &self,
+        specs: &[EngineSpec],
+        timing: Timing,
+        budget: Option<u64>,
+        out: &Path,
+        quiet: bool,
+    ) -> Result<()> {
+        if !(self.dt.is_finite() && self.dt > 0.0) {
+            return Err(Error::Step {
+                dt: self.dt,
+                message: "give a finite number above 0".into(),
+            });
+        }
+        let options = BodiesOptions {
+            sizes: self.sizes()?,
+            dt: self.dt,
+            filling: self.filling,
+            walls: if self.open {
+                Walls::Open
+            } else {
+                Walls::Closed
+            },
+            timing,
+            budget: budget.unwrap_or(BUDGET),
+        };
+        // Before the long run, so that a wrong file is told at once.
+        let others = joined(&self.joined, &options)?;
+        let folder = Folder::open(out)?;
+        let bar = progress(1, quiet);
+        let watch = |bodies: usize, done: usize, all: usize| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            bar.set_message(format!("{bodies} bodies"));
+        };
+        // After each size, so that an interrupted study leaves what it has found.
+        let keep = |study: &BodiesStudy| write_bodies(&folder, study);
+        let mut study = bodies_cost(specs, &options, &watch, &keep)?;
+        bar.finish_and_clear();
+        study.points.extend(others);
+        write_bodies(&folder, &study)?;
+        if study.machine.is_busy() {
+            warn("the machine was not alone with this; ratios hold better than prices");
+        }
+        for refusal in &study.refusals {
+            warn(format_args!("{}: {}", refusal.engine, refusal.reason));
+        }
+        if quiet {
+            return Ok(());
+        }
+        say(bodies_table(&study))?;
+        for finding in bodies_findings(&study) {
+            say(finding)?;
+        }
+        say(format_args!(
+            "Written to {}",
+            folder.path().join("README.md").display()
+        ))
+    }
+
+    /// The numbers of bodies, ascending, each once.
+    fn sizes(&self) -> Result<Vec<usize>> {
+        let mut sizes = self.sizes.clone();
+        sizes.sort_unstable();
+        sizes.dedup();
+        match sizes.iter().find(|size| !BODIES.contains(size)) {
+            Some(size) => Err(Error::Argument {
+                argument: "bodies",
+                found: size.to_string(),
+                remedy: format!("give {} to {}", BODIES.start(), BODIES.end()),
+            }),
+            None => Ok(sizes),
+        }
+    }
+}
