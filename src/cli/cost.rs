@@ -6,13 +6,13 @@ use super::args::{LibraryArgs, chosen};
 use super::bodies;
 use super::output::{progress, say, warn};
 use super::studies::{COST_OPTIONS, Order};
-use crate::case::scene_or_case;
+use crate::case::{Library, scene_or_case};
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder};
 use crate::scene::Scene;
 use crate::study::Timing;
-use crate::study::cost::{CostOptions, PHASES_MIN, Stage, scene_cost};
+use crate::study::cost::{CostOptions, PHASES_MIN, Stage, Tuning, scene_cost, tune};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -42,6 +42,12 @@ pub(super) struct Args {
     /// Later starts from which every engine runs again, for orders and limits; best odd
     #[arg(long, default_value_t = 7)]
     phases: usize,
+    /// Runs that each search of settings may take
+    #[arg(long, value_name = "N", default_value_t = 180)]
+    runs: usize,
+    /// Tune the hand-written solver and Rapier on these other scenes, separated by commas
+    #[arg(long, value_name = "SCENES", value_delimiter = ',')]
+    tune_on: Vec<String>,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -71,11 +77,44 @@ fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
     }
 }
 
+/// The scenes of these names, each once.
+fn read(names: &[String], library: &Library) -> Result<Vec<Scene>> {
+    let mut scenes: Vec<Scene> = Vec::new();
+    for name in names {
+        let scene = scene_or_case(name, library)?.scene;
+        if scenes.iter().all(|known| known.name != scene.name) {
+            scenes.push(scene);
+        }
+    }
+    Ok(scenes)
+}
+
+/// What a search finds on other scenes than those that are scored; nothing if it is not asked for.
+fn tuned(
+    tune_on: &[Scene],
+    scenes: &[Scene],
+    options: &CostOptions,
+    quiet: bool,
+) -> Result<Option<Tuning>> {
+    if tune_on.is_empty() {
+        return Ok(None);
+    }
+    let bar = progress(1, quiet);
+    let tuning = tune(tune_on, scenes, options, &|family, done, most| {
+        bar.set_length(most as u64);
+        bar.set_position(done as u64);
+        bar.set_message(format!("tuning {}", family.word()));
+    })?;
+    bar.finish_and_clear();
+    Ok(Some(tuning))
+}
+
 pub(super) fn run(args: &Args) -> Result<()> {
-    let specs = specs(&args.names)?;
+    let mut specs = specs(&args.names)?;
     for (argument, is_zero) in [
         ("repetitions", args.repetitions == 0),
         ("budget", args.budget == Some(0)),
+        ("runs", args.runs == 0),
     ] {
         if is_zero {
             return Err(Error::Argument {
@@ -108,18 +147,20 @@ pub(super) fn run(args: &Args) -> Result<()> {
             .run(&specs, timing, args.budget, &out, args.quiet);
     }
     let library = args.library.library();
-    let mut scenes: Vec<Scene> = Vec::new();
-    for name in &args.scenes {
-        let scene = scene_or_case(name, &library)?.scene;
-        if scenes.iter().all(|known| known.name != scene.name) {
-            scenes.push(scene);
-        }
-    }
+    let scenes = read(&args.scenes, &library)?;
+    let tune_on = read(&args.tune_on, &library)?;
     let options = CostOptions {
         timing,
         budget: args.budget.unwrap_or(BUDGET),
         phases: args.phases,
+        runs: args.runs,
     };
+    let tuning = tuned(&tune_on, &scenes, &options, args.quiet)?;
+    for family in tuning.iter().flat_map(|tuning| &tuning.families) {
+        // In the place of the preset of that name, if it takes part.
+        specs.retain(|spec| spec.name != family.spec.name);
+        specs.push(family.spec.clone());
+    }
     let folder = Folder::open(&out("cost"))?;
     for scene in &scenes {
         for warning in scene.warnings() {
@@ -130,6 +171,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     Measuring {
         specs: &specs,
         options,
+        tuning,
         quiet: args.quiet,
         warns: true,
     }
@@ -153,6 +195,7 @@ pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
     Measuring {
         specs: &engines,
         options: COST_OPTIONS,
+        tuning: None,
         quiet: order.quiet,
         warns: false,
     }
@@ -163,6 +206,8 @@ pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
 struct Measuring<'a> {
     specs: &'a [EngineSpec],
     options: CostOptions,
+    /// What was tuned beforehand on other scenes, if anything was.
+    tuning: Option<Tuning>,
     /// Whether no progress is shown.
     quiet: bool,
     /// Whether what the reader must know is told at once, and not on the page alone.
@@ -172,8 +217,8 @@ struct Measuring<'a> {
 impl Measuring<'_> {
     /// Measures scene by scene and writes after each, so that an interrupted study leaves what it
     /// has found.
-    fn measure(&self, scenes: &[&Scene], folder: &Folder) -> Result<()> {
-        let mut report = CostReport::begin(folder.clone(), self.options);
+    fn measure(self, scenes: &[&Scene], folder: &Folder) -> Result<()> {
+        let mut report = CostReport::begin(folder.clone(), self.options, self.tuning);
         for (place, scene) in scenes.iter().enumerate() {
             let bar = progress(1, self.quiet);
             let turn = format!("{}/{}", place + 1, scenes.len());

@@ -40,6 +40,7 @@ pub(super) const COST_OPTIONS: CostOptions = CostOptions {
     },
     budget: 30_000,
     phases: 5,
+    runs: 40,
 };
 
 /// The studies of these names, each once, beside cases of these scenes.

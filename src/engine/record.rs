@@ -29,9 +29,20 @@ pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
 /// The recording ends at the last sample in which everything is finite.
 #[must_use]
 pub fn drive(scene: &Scene, voice: &str, simulation: &mut dyn Simulation) -> Recording {
+    drive_to(scene, voice, simulation, scene.sample_count())
+}
+
+/// The same up to a sample.
+#[must_use]
+pub fn drive_to(
+    scene: &Scene,
+    voice: &str,
+    simulation: &mut dyn Simulation,
+    last: usize,
+) -> Recording {
     let mut recording = Recording::at_start(voice, scene);
     let mut states = initial_states(scene);
-    for sample in 1..=scene.sample_count() {
+    for sample in 1..=last {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
         simulation.state_into(&mut states);
         if !recording.keep(scene, halt, &states) {

@@ -146,7 +146,7 @@ fn stored<T: DeserializeOwned>(report: &Folder, study: &'static str) -> Result<O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::cost::Family;
+    use crate::study::cost::EngineFamily;
     use crate::study::cost::testing::{study, summary};
 
     fn folder(scratch: &tempfile::TempDir) -> Folder {
@@ -166,7 +166,7 @@ mod tests {
     fn a_stored_study_is_told_with_its_date_and_its_versions_if_they_differ() {
         let scratch = tempfile::tempdir().unwrap();
         let folder = folder(&scratch);
-        let mut made = summary(&[("lecture", Family::Impulse, &[0.5])]);
+        let mut made = summary(&[("lecture", EngineFamily::Impulse, &[0.5])]);
         made.date = "2001-02-03".to_owned();
         leave(&folder, &made);
         let (studies, complaints) = Studies::read(&folder);
@@ -189,7 +189,10 @@ mod tests {
     fn a_case_finds_its_own_results_unless_the_scene_has_changed() {
         let scratch = tempfile::tempdir().unwrap();
         let folder = folder(&scratch);
-        leave(&folder, &summary(&[("lecture", Family::Impulse, &[0.5])]));
+        leave(
+            &folder,
+            &summary(&[("lecture", EngineFamily::Impulse, &[0.5])]),
+        );
         let (studies, _) = Studies::read(&folder);
         let changed = |scene: &Scene| {
             let section = serde_json::to_value(studies.of_case(scene)).unwrap();

@@ -143,7 +143,7 @@ fn shares(engine: &str) -> [u32; 2] {
         "swept-4" => [100, 35],
         "adaptive" => [100, 30],
         "robust" => [100, 40],
-        "rapier" | "rapier-f64" => [32, 30],
+        "rapier" | "rapier-f64" | "rapier-tuned" => [32, 30],
         "rapier-matched" => [32, 22],
         "exact" | "exact-fast" => [9, 1],
         other => panic!("measure how many of these scenes `{other}` records, and state it"),

@@ -19,6 +19,7 @@ fn study(scene: &Scene, names: &[&str], budget: u64) -> SceneCost {
         },
         budget,
         phases: 7,
+        runs: 1,
     };
     scene_cost(scene, &specs, &options, &|_, _, _| {}).unwrap()
 }

@@ -30,3 +30,4 @@ mod scenes;
 mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;
+mod tuning;

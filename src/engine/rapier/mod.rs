@@ -1,4 +1,4 @@
-//! Rapier worlds: the engines `rapier`, `rapier-f64` and `rapier-matched`.
+//! Rapier worlds: the engines `rapier`, `rapier-f64`, `rapier-matched` and `rapier-tuned`.
 //!
 //! The only folder that names Rapier. What a scene calls for is laid out in plain numbers
 //! ([`layout`]); `worlds` builds it from the crate of the wanted precision, one source for

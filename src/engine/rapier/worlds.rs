@@ -368,7 +368,7 @@ mod tests {
     /// no colliders at all where nothing touches, so that nothing is predicted either.
     #[test]
     fn a_world_holds_what_its_scene_calls_for_and_nothing_else() {
-        for name in ["rapier", "rapier-f64", "rapier-matched"] {
+        for name in ["rapier", "rapier-f64", "rapier-matched", "rapier-tuned"] {
             let native = name != "rapier-matched";
             for declared in 0..16 {
                 let [contact, walls, springs, gravity] =

@@ -18,6 +18,16 @@ pub enum Integrator {
     EnergyMomentum,
 }
 
+impl Integrator {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::SymplecticEuler,
+        Self::VelocityVerlet,
+        Self::RungeKutta4,
+        Self::DormandPrince,
+    ];
+}
+
 /// How drag acts in the hand-written solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -26,6 +36,11 @@ pub enum DragRule {
     Force,
     /// The exact decay of the velocity, with the path that goes with it.
     Exponential,
+}
+
+impl DragRule {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Force, Self::Exponential];
 }
 
 /// How impacts, cushions and rests are found in the hand-written solver.
@@ -40,6 +55,11 @@ pub enum Impacts {
     Swept,
     /// The same, with all of one instant and all that stay in touch solved together.
     Together,
+}
+
+impl Impacts {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Overlap, Self::OverlapInPlace, Self::Swept];
 }
 
 /// Numerical choices of the hand-written solver.
@@ -60,6 +80,49 @@ impl ImpulseSettings {
         drag: DragRule::Force,
         impacts: Impacts::Overlap,
     };
+
+    /// The same with what its integrator leaves no choice of: Runge-Kutta methods take drag as
+    /// one of the forces, and steps of an integrator's own are taken by the sweep alone.
+    #[must_use]
+    pub fn sound(self) -> Self {
+        match self.integrator {
+            Integrator::SymplecticEuler | Integrator::VelocityVerlet => self,
+            Integrator::RungeKutta4 => Self {
+                drag: DragRule::Force,
+                ..self
+            },
+            Integrator::DormandPrince => Self {
+                drag: DragRule::Force,
+                impacts: Impacts::Swept,
+                ..self
+            },
+        }
+    }
+
+    /// Every setting by its name and its value.
+    #[must_use]
+    pub fn parameters(self) -> Vec<(&'static str, String)> {
+        let integrator = match self.integrator {
+            Integrator::SymplecticEuler => "symplectic-euler",
+            Integrator::VelocityVerlet => "velocity-verlet",
+            Integrator::RungeKutta4 => "runge-kutta-4",
+            Integrator::DormandPrince => "dormand-prince",
+        };
+        let drag = match self.drag {
+            DragRule::Force => "force",
+            DragRule::Exponential => "exponential",
+        };
+        let impacts = match self.impacts {
+            Impacts::Overlap => "overlap",
+            Impacts::OverlapInPlace => "overlap-in-place",
+            Impacts::Swept => "swept",
+        };
+        vec![
+            ("integrator", integrator.to_owned()),
+            ("drag", drag.to_owned()),
+            ("impacts", impacts.to_owned()),
+        ]
+    }
 
     /// Order in the step of the motion without impacts, for forces of any kind.
     #[must_use]

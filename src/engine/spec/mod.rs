@@ -35,6 +35,24 @@ pub enum EngineKind {
     Rapier(RapierSettings),
 }
 
+impl EngineKind {
+    /// The settings that differ from those of another, `name=value`; empty if none does.
+    #[must_use]
+    pub fn changed_from(&self, other: &Self) -> String {
+        let of = |kind: &Self| match kind {
+            Self::Impulse(settings) => settings.parameters(),
+            Self::Exact(_) => Vec::new(),
+            Self::Rapier(settings) => settings.parameters(),
+        };
+        let known = of(other);
+        let changed = of(self).into_iter().filter(|own| !known.contains(own));
+        let changed: Vec<_> = changed
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
+        changed.join(" ")
+    }
+}
+
 impl EngineSpec {
     /// Whether it computes step by step, with an error that depends on the step.
     #[must_use]

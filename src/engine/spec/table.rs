@@ -36,6 +36,11 @@ pub fn engines() -> Vec<EngineSpec> {
             EngineKind::Rapier(RapierSettings::matched()),
         ),
         row(
+            "rapier-tuned",
+            "rapier3d-f64 tuned on shot-0-41, shot-2-96 and shot-minus-0-94 by `carom cost --tune-on`",
+            EngineKind::Rapier(RapierSettings::tuned()),
+        ),
+        row(
             "exact",
             "event-driven, with certified digits",
             EngineKind::Exact(ExactSettings::bounded(true)),

@@ -1,7 +1,7 @@
 //! The colour of each engine, the same in every picture of a study.
 
 use crate::report::chart::LineStyle;
-use crate::study::cost::Family;
+use crate::study::cost::EngineFamily;
 
 /// How an engine is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,11 +22,11 @@ const FIRST: usize = 0;
 const RUNGS: [usize; 3] = [2, 5, 7];
 
 /// The colour that stands for all engines of a family.
-pub(super) fn family_color(family: Family) -> usize {
+pub(super) fn family_color(family: EngineFamily) -> usize {
     match family {
-        Family::Impulse => FIRST,
-        Family::Rapier => RAPIER[0],
-        Family::Exact => EXACT,
+        EngineFamily::Impulse => FIRST,
+        EngineFamily::Rapier => RAPIER[0],
+        EngineFamily::Exact => EXACT,
     }
 }
 
@@ -34,7 +34,7 @@ pub(super) fn family_color(family: Family) -> usize {
 ///
 /// Neighbours of one family that share a colour are solid, dashed and dotted in turn; Rapier
 /// worlds, which often coincide, always are.
-pub(super) fn looks(families: &[Family]) -> Vec<Look> {
+pub(super) fn looks(families: &[EngineFamily]) -> Vec<Look> {
     let before = |place: usize, family| {
         let all = families[..place].iter();
         all.filter(|other| **other == family).count()
@@ -43,20 +43,20 @@ pub(super) fn looks(families: &[Family]) -> Vec<Look> {
         let all = families[place + 1..].iter();
         all.filter(|other| **other == family).count()
     };
-    let look = |(place, family): (usize, &Family)| match family {
-        Family::Rapier => Look {
+    let look = |(place, family): (usize, &EngineFamily)| match family {
+        EngineFamily::Rapier => Look {
             color: RAPIER[before(place, *family) % RAPIER.len()],
             line: LineStyle::of_voice(before(place, *family) % 2),
         },
-        Family::Exact => Look {
+        EngineFamily::Exact => Look {
             color: EXACT,
             line: LineStyle::Solid,
         },
-        Family::Impulse if before(place, *family) == 0 => Look {
+        EngineFamily::Impulse if before(place, *family) == 0 => Look {
             color: FIRST,
             line: LineStyle::Solid,
         },
-        Family::Impulse => {
+        EngineFamily::Impulse => {
             let rung = after(place, *family);
             Look {
                 color: RUNGS[rung % RUNGS.len()],
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn engines_of_a_usual_study_look_different() {
-        use Family::{Exact, Impulse, Rapier};
+        use EngineFamily::{Exact, Impulse, Rapier};
         let families = [
             Impulse, Rapier, Rapier, Rapier, Exact, Impulse, Impulse, Impulse, Impulse, Impulse,
             Impulse,

@@ -7,7 +7,7 @@ use crate::report::engineering;
 use crate::report::format::code;
 use crate::scene::LengthUnit;
 use crate::study::cost::{
-    Bid, CostSummary, Family, MAIN_TARGET, Offer, SceneCostSummary, Sensitivity,
+    Bid, CostSummary, EngineFamily, MAIN_TARGET, Offer, SceneCostSummary, Sensitivity,
 };
 use crate::study::median;
 
@@ -23,7 +23,7 @@ fn is_lecture(offer: &Offer) -> bool {
 }
 
 fn is_rapier(offer: &Offer) -> bool {
-    offer.family == Family::Rapier
+    offer.family == EngineFamily::Rapier
 }
 
 /// The answers on one scene: who is cheapest at each accuracy, the lecture beside Rapier, and
@@ -200,9 +200,9 @@ mod tests {
     #[test]
     fn accuracies_of_one_price_are_said_once_and_the_factor_is_theirs() {
         let summary = summary(&[
-            ("lecture", Family::Impulse, &[0.5, 0.5, 2.0]),
-            ("swept", Family::Impulse, &[0.25, 0.25, 0.25]),
-            ("rapier", Family::Rapier, &[4.0, 5.0]),
+            ("lecture", EngineFamily::Impulse, &[0.5, 0.5, 2.0]),
+            ("swept", EngineFamily::Impulse, &[0.25, 0.25, 0.25]),
+            ("rapier", EngineFamily::Rapier, &[4.0, 5.0]),
         ]);
         let found = of_scene(&summary.scenes[0]);
         assert_eq!(
@@ -223,13 +223,13 @@ mod tests {
     #[test]
     fn nobody_keeps_an_accuracy_and_nothing_is_compared_with_who_is_absent() {
         let none = summary(&[
-            ("lecture", Family::Impulse, &[]),
-            ("rapier", Family::Rapier, &[]),
+            ("lecture", EngineFamily::Impulse, &[]),
+            ("rapier", EngineFamily::Rapier, &[]),
         ]);
         let found = of_scene(&none.scenes[0]);
         assert!(found[1].starts_with("Neither"), "{}", found[1]);
         assert!(headline(&none).contains("to keep 1 mm is none in any of 1 scene."));
-        let alone = summary(&[("lecture", Family::Impulse, &[1.0])]);
+        let alone = summary(&[("lecture", EngineFamily::Impulse, &[1.0])]);
         assert_eq!(of_scene(&alone.scenes[0]).len(), 1);
     }
 }

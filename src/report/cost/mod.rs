@@ -15,6 +15,7 @@ mod prices_picture;
 mod push_out;
 mod section;
 mod tables;
+mod tuning;
 
 pub(super) use findings::headline;
 pub(super) use section::CostSection;
@@ -22,7 +23,7 @@ pub(super) use section::CostSection;
 use super::Folder;
 use super::output::write_json;
 use crate::error::Result;
-use crate::study::cost::{CostOptions, CostSummary, SceneCost, SceneCostSummary};
+use crate::study::cost::{CostOptions, CostSummary, SceneCost, SceneCostSummary, Tuning};
 use page::ScenePart;
 
 /// The name of a scene's picture of price over error.
@@ -49,6 +50,7 @@ fn is_stale(name: &str) -> bool {
             "phases.csv",
             "limits.csv",
             "push-out.csv",
+            "tuning.csv",
             "summary.json",
         ]
         .contains(&name)
@@ -59,6 +61,8 @@ fn is_stale(name: &str) -> bool {
 pub struct CostReport {
     folder: Folder,
     summary: CostSummary,
+    /// What was tuned beforehand on other scenes, if anything was.
+    tuning: Option<Tuning>,
     costs: Vec<SceneCost>,
     parts: Vec<ScenePart>,
 }
@@ -66,10 +70,11 @@ pub struct CostReport {
 impl CostReport {
     /// A study with nothing found yet; the folder is left alone until there is.
     #[must_use]
-    pub fn begin(folder: Folder, options: CostOptions) -> Self {
+    pub fn begin(folder: Folder, options: CostOptions, tuning: Option<Tuning>) -> Self {
         Self {
             folder,
             summary: CostSummary::begin(options),
+            tuning,
             costs: Vec::new(),
             parts: Vec::new(),
         }
@@ -94,7 +99,8 @@ impl CostReport {
                 self.folder.write(&name, |out| out.write_all(&png))?;
             }
         }
-        self.parts.push(ScenePart::of(&cost, &scene, self.seed()));
+        let options = &self.summary.options;
+        self.parts.push(ScenePart::of(&cost, &scene, options));
         self.summary.scenes.push(scene);
         self.costs.push(cost);
         self.write()
@@ -119,7 +125,12 @@ impl CostReport {
         folder.write("push-out.csv", |out| {
             push_out::write_push_out(&self.costs, out)
         })?;
-        let page = page::page(&self.summary, &self.parts)?;
+        let mut tuned = None;
+        if let Some(tuning) = &self.tuning {
+            folder.write("tuning.csv", |out| tuning::write_trials(tuning, out))?;
+            tuned = Some(tuning::section(tuning, &self.summary)?);
+        }
+        let page = page::page(&self.summary, &self.parts, tuned)?;
         folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
         folder.write("summary.json", |out| write_json(out, &self.summary))
     }

@@ -14,7 +14,8 @@ use crate::report::overhead::OVERHEAD_HEADER;
 use crate::report::template::fill;
 use crate::study::Ratio;
 use crate::study::cost::{
-    CostPoint, CostSummary, EngineLimit, Order, OrderRow, PriceTag, SceneCost, SceneCostSummary,
+    CostOptions, CostPoint, CostSummary, EngineLimit, Order, OrderRow, PriceTag, SceneCost,
+    SceneCostSummary,
 };
 
 const TEMPLATE: &str = include_str!("../../../templates/cost.md");
@@ -28,6 +29,8 @@ struct Page<'a> {
     summary: &'a CostSummary,
     headline: Option<String>,
     busy: bool,
+    /// The section on what was tuned on other scenes.
+    tuning: Option<String>,
     parts: [&'static str; 5],
     scenes: &'a [ScenePart],
 }
@@ -69,11 +72,16 @@ struct LimitLine {
 ///
 /// # Errors
 /// A fault of the template.
-pub(super) fn page(summary: &CostSummary, scenes: &[ScenePart]) -> Result<String> {
+pub(super) fn page(
+    summary: &CostSummary,
+    scenes: &[ScenePart],
+    tuning: Option<String>,
+) -> Result<String> {
     let page = Page {
         summary,
         headline: (scenes.len() > 1).then(|| headline(summary)),
         busy: summary.machine.is_busy(),
+        tuning,
         parts: OVERHEAD_HEADER,
         scenes,
     };
@@ -81,8 +89,9 @@ pub(super) fn page(summary: &CostSummary, scenes: &[ScenePart]) -> Result<String
 }
 
 impl ScenePart {
-    /// What is worth saying of a scene's study; `seed` is that of the intervals.
-    pub(super) fn of(cost: &SceneCost, summary: &SceneCostSummary, seed: u64) -> Self {
+    /// What is worth saying of a scene's study.
+    pub(super) fn of(cost: &SceneCost, summary: &SceneCostSummary, options: &CostOptions) -> Self {
+        let (seed, runs) = (options.timing.seed, options.runs);
         let unit = summary.length_unit.symbol();
         let tags = cost.price_tags();
         let names: Vec<&str> = cost
@@ -98,7 +107,12 @@ impl ScenePart {
         let limits = &summary.limits;
         let spent = cost.engines.iter().map(|engine| Row {
             engine: engine.spec.name.clone(),
-            cells: vec![engine.settings.to_string(), engine.runs.to_string()],
+            cells: vec![
+                engine.settings.to_string(),
+                engine.runs.to_string(),
+                runs.saturating_sub(engine.runs).to_string(),
+                engine.found.clone().unwrap_or_else(|| NOTHING.to_owned()),
+            ],
         });
         let refusals = cost.refusals.iter();
         Self {

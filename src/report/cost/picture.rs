@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::report::chart::{Answer, Goal, Weight, WorkCurve, WorkFigure, WorkPoint, work};
 use crate::report::engineering;
 use crate::study::cost::{
-    CostPoint, Family, Offer, SceneCost, SceneCostSummary, TagSummary, pareto_front,
+    CostPoint, EngineFamily, Offer, SceneCost, SceneCostSummary, TagSummary, pareto_front,
 };
 
 /// Errors below this share of the finest accuracy asked for are all alike in the picture: what
@@ -41,7 +41,7 @@ fn answer(tag: &TagSummary, looks: &[Look]) -> Option<Answer> {
 fn figure(cost: &SceneCost, summary: &SceneCostSummary) -> WorkFigure {
     let unit = summary.length_unit.symbol();
     let offers = summary.tags.first().map_or(&[][..], |tag| &tag.offers);
-    let families: Vec<Family> = offers.iter().map(|offer| offer.family).collect();
+    let families: Vec<EngineFamily> = offers.iter().map(|offer| offer.family).collect();
     let looks = looks(&families);
     let goals = summary.tags.iter().rev().map(|tag| Goal {
         error: tag.position_error_max,
@@ -53,11 +53,13 @@ fn figure(cost: &SceneCost, summary: &SceneCostSummary) -> WorkFigure {
         let mut answers = goals.iter().filter_map(|goal| goal.answer.as_ref());
         answers.any(|answer| answer.who == engine)
     };
-    let first = offers.iter().find(|offer| offer.family == Family::Impulse);
+    let first = offers
+        .iter()
+        .find(|offer| offer.family == EngineFamily::Impulse);
     let weight = |offer: &Offer| match offer.family {
-        Family::Rapier | Family::Exact => Weight::Main,
-        Family::Impulse if Some(offer) == first || is_named(&offer.engine) => Weight::Main,
-        Family::Impulse => Weight::Aside,
+        EngineFamily::Rapier | EngineFamily::Exact => Weight::Main,
+        EngineFamily::Impulse if Some(offer) == first || is_named(&offer.engine) => Weight::Main,
+        EngineFamily::Impulse => Weight::Aside,
     };
     let curves = offers.iter().zip(&looks);
     let curves = curves.map(|(offer, look)| curve(cost, &offer.engine, *look, weight(offer)));

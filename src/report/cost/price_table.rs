@@ -66,14 +66,14 @@ fn price(bid: &Bid) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::cost::Family;
+    use crate::study::cost::EngineFamily;
     use crate::study::cost::testing::summary;
 
     #[test]
     fn each_accuracy_has_its_column_and_its_winner() {
         let summary = summary(&[
-            ("lecture", Family::Impulse, &[0.5]),
-            ("rapier", Family::Rapier, &[4.0, 5.0]),
+            ("lecture", EngineFamily::Impulse, &[0.5]),
+            ("rapier", EngineFamily::Rapier, &[4.0, 5.0]),
         ]);
         let table = PriceTable::of(&summary.scenes[0]);
         assert_eq!(

@@ -61,14 +61,14 @@ fn way(bid: &Bid) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::cost::Family;
+    use crate::study::cost::EngineFamily;
     use crate::study::cost::testing::summary;
 
     #[test]
     fn who_does_not_get_there_says_so_and_the_cheapest_stands_out() {
         let mut summary = summary(&[
-            ("lecture", Family::Impulse, &[0.5]),
-            ("rapier", Family::Rapier, &[4.0, 5.0]),
+            ("lecture", EngineFamily::Impulse, &[0.5]),
+            ("rapier", EngineFamily::Rapier, &[4.0, 5.0]),
         ]);
         let scene = &mut summary.scenes[0];
         if let Some(bid) = &mut scene.tags[0].offers[1].bid {

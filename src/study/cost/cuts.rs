@@ -142,6 +142,7 @@ mod tests {
             },
             budget: 100_000,
             phases: 3,
+            runs: 30,
         };
         let costs = step_costs(&scene, &specs, 4, &options).unwrap();
         let names: Vec<_> = costs.iter().map(|cost| cost.engine.as_str()).collect();

@@ -1,5 +1,7 @@
 //! The ladder of steps: powers of two of the sample spacing, as far as the budget reaches.
 
+use crate::engine::StepGrid;
+use crate::error::{Error, Result};
 use crate::scene::Scene;
 
 /// More rungs than this say nothing new: the step is then a millionth of the sample spacing.
@@ -22,17 +24,11 @@ pub struct Rung {
 /// first rung beyond the `budget` ends the ladder and is marked.
 #[must_use]
 pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
-    let a_step = work_a_step(scene);
-    let samples = scene.sample_count() as u64;
     let mut rungs = Vec::new();
     for power in 0..RUNGS_MAX {
         let steps_per_sample = 1_u64 << power;
-        let work = steps_per_sample
-            .saturating_mul(samples)
-            .saturating_mul(a_step);
-        #[allow(clippy::cast_precision_loss, reason = "a power of two")]
-        let dt = scene.sample_every / steps_per_sample as f64;
-        let affordable = work <= budget;
+        let dt = halved(scene.sample_every, power);
+        let affordable = work(scene, steps_per_sample) <= budget;
         rungs.push(Rung {
             steps_per_sample,
             dt,
@@ -49,6 +45,43 @@ pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
 pub(super) fn work_a_step(scene: &Scene) -> u64 {
     let bodies = scene.bodies.len() as u64;
     bodies + bodies * bodies.saturating_sub(1) / 2
+}
+
+/// The steps that all of these scenes can take, s, from coarse to fine: halves of the longest
+/// spacing of samples, as long as every run stays within its budget.
+///
+/// # Errors
+/// [`Error::Argument`] if not even the coarsest does.
+pub fn common_steps(scenes: &[Scene], budget: u64) -> Result<Vec<f64>> {
+    let spacings = scenes.iter().map(|scene| scene.sample_every);
+    let longest = spacings.fold(0.0, f64::max);
+    let is_affordable = |dt: &f64| {
+        scenes.iter().all(|scene| {
+            StepGrid::new(scene, *dt).is_ok_and(|grid| work(scene, grid.steps_per_sample) <= budget)
+        })
+    };
+    let steps = (0..RUNGS_MAX).map(|power| halved(longest, power));
+    let steps: Vec<f64> = steps.take_while(is_affordable).collect();
+    if steps.is_empty() {
+        return Err(Error::Argument {
+            argument: "budget",
+            found: budget.to_string(),
+            remedy: "not enough for a step between two samples; give more".into(),
+        });
+    }
+    Ok(steps)
+}
+
+fn halved(length: f64, power: u32) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "a power of two")]
+    let parts = (1_u64 << power) as f64;
+    length / parts
+}
+
+/// Counted work of a run: steps x (bodies + pairs).
+fn work(scene: &Scene, steps_per_sample: u64) -> u64 {
+    let steps = steps_per_sample.saturating_mul(scene.sample_count() as u64);
+    steps.saturating_mul(work_a_step(scene))
 }
 
 #[cfg(test)]
@@ -75,5 +108,11 @@ mod tests {
         );
         assert_eq!(steps(47), [(1.0, true), (0.5, true), (0.25, false)]);
         assert_eq!(steps(1), [(1.0, false)]);
+        // The other scene is sampled twice as often, for half as long: the same work.
+        let mut other = scene.clone();
+        (other.duration, other.sample_every) = (2.0, 0.5);
+        let both = [scene, other];
+        assert_eq!(common_steps(&both, 48).unwrap(), [1.0, 0.5, 0.25]);
+        assert!(common_steps(&both, 11).is_err());
     }
 }

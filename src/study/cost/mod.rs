@@ -9,6 +9,7 @@ mod limit;
 mod limit_row;
 mod machine;
 mod orders;
+mod own_search;
 mod phases;
 mod price_tag;
 mod push_out;
@@ -19,8 +20,9 @@ mod summary;
 mod survey;
 #[cfg(test)]
 pub(crate) mod testing;
+mod tune;
 
-pub use contender::{Contender, STOCK, contenders};
+pub use contender::{Contender, STOCK, is_searched, setting};
 pub use cuts::StepCost;
 pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
@@ -35,8 +37,12 @@ pub use push_out::{Left, PushOut, PushOutRung};
 pub use reference::{Errors, Reference};
 pub use sensitivity::{Sensitivity, sensitivity};
 pub use series::Series;
-pub use summary::{Bid, CostSummary, Family, Offer, SceneCostSummary, TagSummary};
+pub use summary::{Bid, CostSummary, EngineFamily, Offer, SceneCostSummary, TagSummary};
 pub use survey::scene_cost;
+pub use tune::{
+    Candidate, Family, FamilyTuning, Score, Search, Shot, ShotError, Trial, Tuning, TuningWatcher,
+    coordinates, effective, measure, search, tune, typical,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +60,9 @@ pub struct CostOptions {
     pub budget: u64,
     /// Later starts from which every engine runs again, unpriced: phases of the step.
     pub phases: usize,
+    /// Runs that each search of settings may take: of an engine on the very scene, of a family
+    /// on the shots tuned on.
+    pub runs: usize,
 }
 
 /// What a study is doing.
@@ -149,6 +158,9 @@ pub struct EngineCost {
     pub settings: usize,
     /// How many runs were made, each with its repetitions.
     pub runs: usize,
+    /// The settings that err least on this very scene over the ladder of steps; none for an
+    /// engine whose settings are not searched.
+    pub found: Option<String>,
 }
 
 /// The cost of accuracy on one scene.

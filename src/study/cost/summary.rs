@@ -66,7 +66,7 @@ pub struct Offer {
     /// The engine.
     pub engine: String,
     /// What kind of engine it is.
-    pub family: Family,
+    pub family: EngineFamily,
     /// Its cheapest setting that keeps the accuracy; none within the budget.
     pub bid: Option<Bid>,
 }
@@ -74,7 +74,7 @@ pub struct Offer {
 /// The kinds of engines, for sentences about one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Family {
+pub enum EngineFamily {
     /// The lecture's solver and the rungs of its ladder.
     Impulse,
     /// From event to event, without steps.
@@ -152,7 +152,7 @@ impl TagSummary {
             let spec: &EngineSpec = engine;
             Offer {
                 engine: spec.name.clone(),
-                family: Family::of(spec),
+                family: EngineFamily::of(spec),
                 bid: point.and_then(Bid::of),
             }
         };
@@ -172,7 +172,7 @@ impl TagSummary {
     }
 }
 
-impl Family {
+impl EngineFamily {
     fn of(spec: &EngineSpec) -> Self {
         match spec.kind {
             EngineKind::Impulse(_) => Self::Impulse,
@@ -248,6 +248,7 @@ mod tests {
             },
             budget: 10,
             phases: 3,
+            runs: 30,
         });
         summary.scenes.push(SceneCostSummary::of(&cost, 1).unwrap());
         let text = serde_json::to_string(&summary).unwrap();

@@ -4,9 +4,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::contender::{Contender, contenders};
+use super::contender::Contender;
 use super::cuts::step_costs;
 use super::ladder::{Rung, ladder};
+use super::own_search::search_settings;
 use super::phases::phases;
 use super::push_out::push_out;
 use super::{
@@ -45,8 +46,7 @@ pub fn scene_cost(
 ) -> Result<SceneCost> {
     watch(Stage::Reference, 0, 1);
     let exact = Reference::exact(scene)?;
-    let (taking_part, engines, refusals) = taking_part(scene, specs, options)?;
-    let runs = runs(&taking_part, options);
+    let (presets, refusals) = taking_part(scene, specs)?;
     let (mut notes, mut reference) = match exact {
         Ok(reference) => (Vec::new(), Some(reference)),
         Err(why) => (
@@ -66,11 +66,19 @@ pub fn scene_cost(
             notes.push("What a misplaced ball does could not be computed.".to_owned());
         }
     }
-    let errors = errors(scene, &runs, reference.as_ref(), watch)?;
+    let errors = errors(scene, &runs(&presets, options), reference.as_ref(), watch)?;
     let sample = reference
         .as_ref()
         .map_or(scene.sample_count(), |known| known.rest_sample(scene));
-    let (mut points, size) = errors;
+    let (points, size) = errors;
+    let Measured {
+        contenders,
+        mut points,
+        engines,
+    } = match &reference {
+        Some(known) => search_settings(&presets, &points, known, options, watch)?,
+        None => Measured::only(presets, points),
+    };
     let stepping: Vec<&EngineSpec> = engines
         .iter()
         .map(|engine| &engine.spec)
@@ -87,6 +95,7 @@ pub fn scene_cost(
             phases.len()
         ));
     }
+    let runs = runs(&contenders, options);
     price(&mut points, &runs, sample, options, watch)?;
     let step_costs = step_costs(scene, specs, sample, options)?;
     let push_out = match &reference {
@@ -121,10 +130,41 @@ fn cut(scene: &Scene, reference: &Reference) -> Option<String> {
     (!all).then_some(note)
 }
 
-type TakingPart = (Vec<Contender>, Vec<EngineCost>, Vec<Refusal>);
+/// Who took part and what came of it, by engine, setting and step.
+pub(super) struct Measured {
+    pub(super) contenders: Vec<Contender>,
+    pub(super) points: Vec<CostPoint>,
+    pub(super) engines: Vec<EngineCost>,
+}
 
-fn taking_part(scene: &Scene, specs: &[EngineSpec], options: &CostOptions) -> Result<TakingPart> {
-    let (mut all, mut engines, mut refusals) = (Vec::new(), Vec::new(), Vec::new());
+impl Measured {
+    /// Engines as they come, without a search: one ladder each.
+    fn only(presets: Vec<Contender>, points: Vec<CostPoint>) -> Self {
+        let ladders = points.chunk_by(|a, b| a.engine == b.engine);
+        let pairs = presets.iter().zip(ladders);
+        let engines = pairs.map(|(preset, ladder)| EngineCost {
+            spec: preset.spec.clone(),
+            settings: 1,
+            runs: runs_of(ladder),
+            found: None,
+        });
+        Self {
+            engines: engines.collect(),
+            contenders: presets,
+            points,
+        }
+    }
+}
+
+/// How many of the points were run.
+pub(super) fn runs_of(ladder: &[CostPoint]) -> usize {
+    let run = ladder.iter().filter(|point| !point.is_over_budget());
+    run.count()
+}
+
+/// The engines as they come that can do the scene, and those that cannot.
+fn taking_part(scene: &Scene, specs: &[EngineSpec]) -> Result<(Vec<Contender>, Vec<Refusal>)> {
+    let (mut presets, mut refusals) = (Vec::new(), Vec::new());
     for spec in specs {
         match prepare(scene, spec, scene.sample_every) {
             Err(refusal @ Error::EngineCannot { .. }) => {
@@ -136,17 +176,9 @@ fn taking_part(scene: &Scene, specs: &[EngineSpec], options: &CostOptions) -> Re
             }
             started => drop(started?),
         }
-        let own = contenders(scene, spec);
-        let affordable = ladder(scene, options.budget);
-        let rungs = affordable.iter().filter(|rung| rung.affordable).count();
-        engines.push(EngineCost {
-            spec: spec.clone(),
-            settings: own.len(),
-            runs: own.len() * if spec.takes_steps() { rungs } else { 1 },
-        });
-        all.extend(own);
+        presets.push(Contender::stock(scene, spec));
     }
-    Ok((all, engines, refusals))
+    Ok((presets, refusals))
 }
 
 /// Every contender on its ladder; engines without steps run once.
@@ -312,6 +344,7 @@ mod tests {
         },
         budget: 100,
         phases: 3,
+        runs: 30,
     };
 
     fn study(text: &str, names: &[&str]) -> SceneCost {

@@ -1,8 +1,8 @@
 //! What the tests of the study share.
 
 use super::{
-    Bid, CostOptions, CostPoint, CostSummary, Ending, EngineCost, Errors, Family, Offer, SceneCost,
-    SceneCostSummary, TagSummary,
+    Bid, CostOptions, CostPoint, CostSummary, Ending, EngineCost, EngineFamily, Errors, Offer,
+    SceneCost, SceneCostSummary, TagSummary,
 };
 use crate::engine::engine;
 use crate::recording::{Outcome, Work};
@@ -26,6 +26,7 @@ pub(crate) fn study(ladders: &[Ladder]) -> SceneCost {
                 spec,
                 settings: 1,
                 runs: ladder.len(),
+                found: None,
             });
         }
         let mut dt = 1.0;
@@ -62,10 +63,10 @@ pub(crate) fn study(ladders: &[Ladder]) -> SceneCost {
 
 /// The summary of a study of one scene in millimetres: engines with their prices from the
 /// coarsest accuracy on, all with a step of 0.01 s.
-pub(crate) fn summary(engines: &[(&str, Family, &[f64])]) -> CostSummary {
+pub(crate) fn summary(engines: &[(&str, EngineFamily, &[f64])]) -> CostSummary {
     let cost = study(&[]);
     let offer = |place: usize| {
-        move |(engine, family, prices): &(&str, Family, &[f64])| Offer {
+        move |(engine, family, prices): &(&str, EngineFamily, &[f64])| Offer {
             engine: (*engine).to_owned(),
             family: *family,
             bid: prices.get(place).map(|price| Bid {
@@ -92,6 +93,7 @@ pub(crate) fn summary(engines: &[(&str, Family, &[f64])]) -> CostSummary {
             repetitions: 5,
         },
         phases: 3,
+        runs: 30,
         budget: 1000,
     };
     CostSummary {

@@ -3,6 +3,7 @@
 mod impacts;
 mod range;
 mod repeat;
+mod settings;
 mod worlds;
 
 use carom::engine::{engine, record};
@@ -10,7 +11,7 @@ use carom::physics::BodyState;
 use carom::recording::Recording;
 use carom::scene::{Body, Contact, Cushions, Effects, LengthUnit, Scene, Spring, Units};
 
-const RAPIER: [&str; 3] = ["rapier", "rapier-f64", "rapier-matched"];
+const RAPIER: [&str; 4] = ["rapier", "rapier-f64", "rapier-matched", "rapier-tuned"];
 
 /// Allowed error of a speed ratio or impulse: the bounds, 1e-6 in 64 bits and 1e-4 in 32.
 /// Measured: 5e-16 and 3e-7, a few roundings of velocities.
