@@ -14,7 +14,7 @@ const BODIES: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// What the study of numbers of bodies is asked beyond what every study of cost is.
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {
+pub(super) struct BodiesArgs {
     /// Instead of scenes: a gas of each of these numbers of bodies, at the same density
     #[arg(
         long = "bodies",
@@ -42,7 +42,7 @@ pub(super) struct Args {
 /// Work a run may take unless told otherwise: six steps of 10,000 bodies, all pairs.
 const BUDGET: u64 = 300_000_000;
 
-impl Args {
+impl BodiesArgs {
     /// Makes the study.
     pub fn run(
         &self,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{LibraryArgs, chosen};
-use super::bodies;
+use super::bodies::BodiesArgs;
 use super::output::{progress, say, warn};
 use super::studies::{COST_OPTIONS, Order};
 use crate::case::{Library, scene_or_case};
@@ -23,7 +23,7 @@ pub(super) struct Args {
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     #[command(flatten)]
-    bodies: bodies::Args,
+    bodies: BodiesArgs,
     #[command(flatten)]
     library: LibraryArgs,
     /// Folder for the files [default: runs/cost, or runs/bodies with --bodies]

@@ -32,6 +32,12 @@ pub fn engineering(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A count from 1 on that is known to no more than two significant digits.
+pub(super) fn about(count: f64) -> String {
+    let unit = 10_f64.powf((count.log10().floor() - 1.0).max(0.0));
+    format!("{:.0}", (count / unit).round() * unit)
+}
+
 /// A share as a percentage; tiny shares as powers of ten.
 ///
 /// ```
@@ -71,4 +77,25 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
         padded.join("  ").trim_end().to_owned()
     };
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_have_two_digits() {
+        let told = [4.4, 12.6, 1849.0, 9960.0].map(about);
+        assert_eq!(told, ["4", "13", "1800", "10000"]);
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let rows = [
+            vec!["a".to_owned(), "µµµ".into()],
+            vec!["bb".into(), "c".into()],
+        ];
+        assert_eq!(aligned(&rows), "a   µµµ\nbb  c");
+        assert_eq!(aligned(&[]), "");
+    }
 }

@@ -68,7 +68,15 @@ fn closing(length: f64, instant: f64, at: impl Fn(f64) -> Opening<f64>) -> Optio
     for _ in 0..2 {
         match first_closing(length - from, instant, |t| at(from + t)) {
             Search::Closes(time) if from + time <= length => return Some(from + time),
-            Search::OpenUntil(time) => from += time,
+            Search::OpenUntil(time) => {
+                from += time;
+                let now = at(from);
+                // Places that are large beside the gap do not move in so short a time: the search
+                // stands still where the gap is less than their rounding.
+                if now.rate < 0.0 && now.width <= -now.rate * instant {
+                    return Some(from);
+                }
+            }
             Search::Closes(_) | Search::Open => return None,
         }
     }

@@ -19,7 +19,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// All of them.
+    /// Those that a search may combine with others; the one of `robust` comes with all of it.
     pub const ALL: [Self; 4] = [
         Self::SymplecticEuler,
         Self::VelocityVerlet,
@@ -58,7 +58,7 @@ pub enum Impacts {
 }
 
 impl Impacts {
-    /// All of them.
+    /// Those that a search may combine with others; the one of `robust` comes with all of it.
     pub const ALL: [Self; 3] = [Self::Overlap, Self::OverlapInPlace, Self::Swept];
 }
 
@@ -96,6 +96,11 @@ impl ImpulseSettings {
                 impacts: Impacts::Swept,
                 ..self
             },
+            Integrator::EnergyMomentum => Self {
+                drag: DragRule::Exponential,
+                impacts: Impacts::Together,
+                ..self
+            },
         }
     }
 
@@ -107,6 +112,7 @@ impl ImpulseSettings {
             Integrator::VelocityVerlet => "velocity-verlet",
             Integrator::RungeKutta4 => "runge-kutta-4",
             Integrator::DormandPrince => "dormand-prince",
+            Integrator::EnergyMomentum => "energy-momentum",
         };
         let drag = match self.drag {
             DragRule::Force => "force",
@@ -116,6 +122,7 @@ impl ImpulseSettings {
             Impacts::Overlap => "overlap",
             Impacts::OverlapInPlace => "overlap-in-place",
             Impacts::Swept => "swept",
+            Impacts::Together => "together",
         };
         vec![
             ("integrator", integrator.to_owned()),

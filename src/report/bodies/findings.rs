@@ -3,6 +3,7 @@
 use super::tables::{label, ratio};
 use crate::engine::{EngineKind, engine};
 use crate::report::engineering;
+use crate::report::format::about;
 use crate::study::bodies::{BASE, BodiesStudy, Crossover, Series};
 
 /// The crossovers with the base, the ratios at the largest size, and how far the builds can be
@@ -65,7 +66,7 @@ fn overtaking(study: &BodiesStudy, series: Series) -> Vec<String> {
 
 fn crossing(name: &str, crossover: &Crossover) -> String {
     let [low, high] = crossover.between;
-    let at = engineering(crossover.bodies);
+    let at = about(crossover.bodies);
     let (cheaper, dearer) = if crossover.is_cheaper_above {
         (name, BASE)
     } else {

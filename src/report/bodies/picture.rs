@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::report::chart::{
     Crossing, LineStyle, ScalingFigure, Spent, Weight, WorkCurve, WorkFigure, WorkPoint, scaling,
 };
-use crate::report::engineering;
+use crate::report::format::about;
 use crate::study::bodies::{BASE, BodiesPoint, BodiesStudy, Series, Walls};
 
 /// The rung that is drawn beside the lecture; the others lie on one of these two.
@@ -69,7 +69,12 @@ fn figure(study: &BodiesStudy) -> ScalingFigure {
         WorkCurve {
             label: label(study, *series),
             color: color(series),
-            line: LineStyle::of_voice(place(&builds, series.build)),
+            line: if builds.len() > 1 {
+                LineStyle::of_voice(place(&builds, series.build))
+            } else {
+                // Solid and dashed in turn: neighbours that coincide both show.
+                LineStyle::of_voice(color(series) % 2)
+            },
             weight: Weight::Main,
             points: points.filter_map(|point| point_of(study, point)).collect(),
             others: Vec::new(),
@@ -80,7 +85,7 @@ fn figure(study: &BodiesStudy) -> ScalingFigure {
         crossovers.map(|crossover| Crossing {
             at: [crossover.bodies, crossover.step_us],
             color: color(series),
-            label: engineering(crossover.bodies),
+            label: about(crossover.bodies),
         })
     });
     let spent = drawn.iter().flat_map(|series| {

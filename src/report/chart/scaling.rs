@@ -37,7 +37,7 @@ pub struct ScalingFigure {
 pub struct Crossing {
     /// Number and cost.
     pub at: [f64; 2],
-    /// Index of the colour of its label.
+    /// Index of its colour.
     pub color: usize,
     /// What is written beside it, where there is room.
     pub label: String,
@@ -74,7 +74,7 @@ pub fn scaling(figure: &ScalingFigure) -> Result<Vec<u8>, ChartError> {
             let Some(at) = plot.place(crossing.at) else {
                 continue;
             };
-            canvas.ring(at, RING, ring())?;
+            canvas.ring(at, RING, Pen::solid(color(crossing.color), 3.0))?;
             let size = [width(&crossing.label, NOTE_PX)?, 1.1 * NOTE_PX];
             if let Some(free) = room.beside(&[at], &NEAR, size) {
                 let look = Lettering {

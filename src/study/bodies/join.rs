@@ -63,7 +63,7 @@ fn obstacle(
 /// Reads the points of other builds, each file of builds of its own, measured in the same way.
 ///
 /// # Errors
-/// As [`read_bodies`]; [`Error::Join`] if they were measured otherwise, or are of a build that is
+/// [`Error::Read`] and [`Error::Table`] with the file; [`Error::Join`] if they were measured otherwise, or are of a build that is
 /// here already.
 pub fn joined(files: &[PathBuf], options: &BodiesOptions) -> Result<Vec<BodiesPoint>> {
     let mut builds = vec![build()];
