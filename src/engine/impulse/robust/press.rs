@@ -154,6 +154,7 @@ impl Robust {
         mean_force::set(phases, &self.start, particles, &self.pushes);
         self.flow.advance(particles, h);
         self.work.taken.passes += u64::from(phases.forces);
+        self.work.charge_motion();
         if self.limits.are_absent {
             return true;
         }
@@ -167,6 +168,7 @@ impl Robust {
             }
             self.flow.advance(particles, h);
             self.work.taken.passes += 1;
+            self.work.charge_motion();
             let (mut change, mut travel) = (0.0_f64, 0.0_f64);
             for ((particle, before), start) in particles.iter().zip(&self.before).zip(&self.start) {
                 change = larger(change, (particle.position - before).norm());

@@ -2,8 +2,8 @@
 
 use crate::engine::impulse::handling::Taken;
 
-/// Sums of forces that each step may take; what it takes more is carried over to the next.
-const PASSES_A_STEP: u64 = 20_000;
+/// Motions of all bodies that each step may try; what it tries more is carried over to the next.
+const MOTIONS_A_STEP: u64 = 10_000;
 /// Shortest substep as a share of the step, before the work gets too much.
 const SHORTEST: f64 = 1e-9;
 /// Impacts that each step may take without carrying any over.
@@ -20,26 +20,30 @@ pub(super) struct Work {
     pub(super) taken: Taken,
     /// Reflections at impacts, less those that steps were allowed.
     pub(super) impacts: u64,
-    /// Sums of forces before this step, less those that steps were allowed.
-    carried: u64,
+    /// Motions tried, less those that earlier steps were allowed.
+    motions: u64,
 }
 
 impl Work {
     pub(super) fn begin_step(&mut self) {
-        let passes = self.carried + self.taken.passes;
-        self.carried = passes.saturating_sub(PASSES_A_STEP);
+        self.motions = self.motions.saturating_sub(MOTIONS_A_STEP);
         self.impacts = self.impacts.saturating_sub(IMPACTS_A_STEP);
         self.taken = Taken::default();
     }
 
+    /// A motion of all bodies was tried.
+    pub(super) fn charge_motion(&mut self) {
+        self.motions += 1;
+    }
+
     /// A substep that led nowhere costs a whole allowance: where one does, more will.
     pub(super) fn charge_failure(&mut self) {
-        self.carried += PASSES_A_STEP;
+        self.motions += MOTIONS_A_STEP;
     }
 
     /// The shortest substep of a step: it doubles with every allowance that is overdrawn.
     pub(super) fn shortest(&self, dt: f64) -> f64 {
-        let overdrawn = (self.carried + self.taken.passes) / PASSES_A_STEP;
+        let overdrawn = self.motions / MOTIONS_A_STEP;
         let doublings = i32::try_from(overdrawn).unwrap_or(i32::MAX).min(1000);
         dt * SHORTEST * 2.0_f64.powi(doublings)
     }
@@ -70,7 +74,9 @@ mod tests {
     fn an_overdrawn_allowance_makes_steps_longer_and_is_paid_back() {
         let mut work = Work::default();
         assert_eq!(work.shortest(2.0), 2e-9);
-        work.taken.passes = 30 * PASSES_A_STEP;
+        for _ in 0..30 {
+            work.charge_failure();
+        }
         assert!(work.shortest(2.0) > 2.0);
         work.begin_step();
         assert!(work.shortest(2.0) > 1.0);
