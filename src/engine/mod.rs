@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 
 use crate::error::Result;
 use crate::physics::BodyState;
-use crate::recording::{EventLog, Outcome, Work};
+use crate::recording::{Concession, EventLog, Ledger, Outcome, Work};
 use crate::scene::Scene;
 
 /// A scene in the course of being computed, one sample after the other.
@@ -44,6 +44,22 @@ pub trait Simulation {
 
     /// Work counted so far.
     fn work(&self) -> Work;
+
+    /// Starts to book what each phase takes and gives; whether the engine can. Until then nothing
+    /// is booked, at no cost.
+    fn keep_ledger(&mut self) -> bool {
+        false
+    }
+
+    /// What was booked so far, once books are kept.
+    fn ledger(&self) -> Option<&Ledger> {
+        None
+    }
+
+    /// What the engine gave up so far to go on.
+    fn concessions(&self) -> Vec<Concession> {
+        Vec::new()
+    }
 }
 
 /// Prepares an engine for a scene: checks that it can, plans only what the scene declares.

@@ -50,5 +50,6 @@ pub fn drive_to(
         }
     }
     recording.work = simulation.work();
+    recording.concessions = simulation.concessions();
     recording
 }

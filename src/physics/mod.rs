@@ -3,7 +3,9 @@
 //! Every function that the `lecture` engine uses keeps the slides' order of arithmetic, every
 //! operator left to right, so that the engine reproduces their C++ to the last bit.
 
+pub mod cholesky;
 pub mod closing;
+pub mod complementarity;
 mod energy;
 mod force;
 mod impulse;

@@ -1,16 +1,20 @@
 //! What an engine produced: states on the scene's time grid, events, work, and how it ended.
 
+mod concession;
 mod digits;
 mod event;
 mod events_csv;
+mod ledger;
 mod number;
 mod outcome;
 mod table;
 mod trajectory_csv;
 
+pub use concession::{Concession, ConcessionKind};
 pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
 pub use events_csv::{read_events, write_events};
+pub use ledger::{Account, Entry, Ledger};
 pub use number::finite_or_blank;
 pub use outcome::{CollapseReason, Outcome};
 pub use trajectory_csv::{read_trajectory, read_trajectory_start, write_trajectory};
@@ -66,6 +70,8 @@ pub struct Recording {
     pub digits: Option<Vec<Digits>>,
     /// From when on the model has no single answer.
     pub undetermined: Option<Undetermined>,
+    /// What the engine gave up to go on.
+    pub concessions: Vec<Concession>,
 }
 
 impl Recording {
@@ -88,6 +94,7 @@ impl Recording {
             outcome: Outcome::Finished,
             digits: None,
             undetermined: None,
+            concessions: Vec::new(),
         }
     }
 

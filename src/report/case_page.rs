@@ -9,6 +9,7 @@ use super::{engineering, limits, percent};
 use crate::case::TRUTH;
 use crate::compare::{ClusterFacts, RIGHT_WITHIN, TOUCHING, Verdict};
 use crate::error::Result;
+use crate::recording::Concession;
 use crate::study::{PairSummary, Summary, VoiceSummary};
 
 const TEMPLATE: &str = include_str!("../../templates/case.md");
@@ -150,6 +151,16 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         Some((voice.voice.clone(), told))
     });
     found.extend(undetermined);
+    let gave_way = summary.voices.iter().flat_map(|voice| {
+        let told = |concession: &Concession| {
+            (
+                voice.voice.clone(),
+                format!("gave way to go on: {concession}."),
+            )
+        };
+        voice.concessions.iter().map(told)
+    });
+    found.extend(gave_way);
     let warned = summary.voices.iter().flat_map(|voice| {
         let warning = |text: &String| (voice.voice.clone(), format!("bends the scene: {text}."));
         voice.warnings.iter().map(warning)

@@ -11,7 +11,9 @@ use crate::compare::{
     ClusterFacts, Disagreement, Divergence, Drift, EventAgreement, Sizes, Verdict,
 };
 use crate::engine::{EngineSpec, notes, warnings};
-use crate::recording::{Digits, Event, EventCounts, EventKind, Outcome, Undetermined, Work};
+use crate::recording::{
+    Concession, Digits, Event, EventCounts, EventKind, Outcome, Undetermined, Work,
+};
 use crate::scene::{LengthUnit, Scene};
 
 /// Everything about one comparison but the curves.
@@ -90,6 +92,8 @@ pub struct VoiceSummary {
     pub digits_min: Option<Digits>,
     /// From when on the model has no single answer.
     pub undetermined: Option<Undetermined>,
+    /// What the engine gave up to go on.
+    pub concessions: Vec<Concession>,
     /// What became of the cluster, up to the last sample that all voices have; none where the
     /// bodies are no cluster.
     pub cluster: Option<ClusterFacts>,
@@ -229,6 +233,7 @@ impl VoiceSummary {
             work: recording.work,
             digits_min: recording.fewest_digits(scene),
             undetermined: recording.undetermined.clone(),
+            concessions: recording.concessions.clone(),
             cluster,
             drift: voice.drift,
         }

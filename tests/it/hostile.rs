@@ -142,6 +142,7 @@ fn shares(engine: &str) -> [u32; 2] {
         "exact-drag" | "verlet" | "swept" => [100, 44],
         "swept-4" => [100, 35],
         "adaptive" => [100, 30],
+        "robust" => [100, 40],
         "rapier" | "rapier-f64" | "rapier-tuned" => [32, 30],
         "rapier-matched" => [32, 22],
         "exact" | "exact-fast" => [9, 1],

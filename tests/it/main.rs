@@ -16,6 +16,7 @@ mod hard;
 mod hostile;
 mod invariants;
 mod layers;
+mod ledger;
 mod limits;
 mod oracle;
 mod orders;
@@ -24,6 +25,7 @@ mod plain_loop;
 mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod robust;
 mod scenes;
 mod studies;
 #[cfg(feature = "rapier")]

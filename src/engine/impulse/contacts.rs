@@ -1,17 +1,17 @@
 //! Contacts between spheres: overlap, impulse, push apart.
 
-use super::Particle;
 use super::observer::Observer;
+use super::{Particle, books};
 use crate::physics::{Vector3, contact_impulse, length};
-use crate::recording::EventKind;
+use crate::recording::{Account, EventKind};
 use crate::scene::Contact;
 
 /// Slides' loop over `collisionHandler(i, j)`, i < j.
 #[inline]
-pub(super) fn collide<const PUSH_OUT: bool>(
+pub(super) fn collide<const PUSH_OUT: bool, O: Observer>(
     particles: &mut [Particle],
     effect: Contact,
-    observer: &mut impl Observer,
+    observer: &mut O,
 ) {
     for i in 0..particles.len() {
         let (head, tail) = particles.split_at_mut(i + 1);
@@ -29,6 +29,10 @@ pub(super) fn collide<const PUSH_OUT: bool>(
                         },
                         impulse,
                     );
+                    if O::BOOKS {
+                        let entry = books::contact(effect.restitution, [a.mass, b.mass], impulse);
+                        observer.book(Account::Contacts, entry);
+                    }
                 }
             }
         }
@@ -71,7 +75,12 @@ pub(super) fn approach(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector
 }
 
 #[inline]
-fn line_of_action(apart: &Vector3, distance: f64, va: &Vector3, vb: &Vector3) -> Vector3 {
+pub(super) fn line_of_action(
+    apart: &Vector3,
+    distance: f64,
+    va: &Vector3,
+    vb: &Vector3,
+) -> Vector3 {
     if distance > 0.0 {
         apart / distance
     } else {
@@ -130,7 +139,7 @@ mod tests {
             particle(Vector3::new(1.9, 0.0, 0.0), Vector3::new(-1.0, 0.0, 0.0)),
             particle(Vector3::zeros(), Vector3::zeros()),
         ];
-        collide::<true>(&mut pair, Contact { restitution: 1.0 }, &mut Nobody);
+        collide::<true, _>(&mut pair, Contact { restitution: 1.0 }, &mut Nobody);
         assert_eq!(pair[0].velocity, Vector3::zeros());
         assert_eq!(pair[1].velocity, Vector3::new(-1.0, 0.0, 0.0));
         assert!(
@@ -146,7 +155,7 @@ mod tests {
             particle(still, still),
             particle(still, Vector3::new(0.0, 3.0, 0.0)),
         ];
-        collide::<true>(&mut pair, Contact { restitution: 0.5 }, &mut Nobody);
+        collide::<true, _>(&mut pair, Contact { restitution: 0.5 }, &mut Nobody);
         let apart = pair[0].position - pair[1].position;
         assert_eq!(
             apart,
@@ -154,7 +163,7 @@ mod tests {
             "(1 + e) times the overlap of 2, along y"
         );
         let mut resting = [particle(still, still), particle(still, still)];
-        collide::<true>(&mut resting, Contact { restitution: 0.5 }, &mut Nobody);
+        collide::<true, _>(&mut resting, Contact { restitution: 0.5 }, &mut Nobody);
         assert_eq!(
             resting[0].position - resting[1].position,
             Vector3::new(3.0, 0.0, 0.0)

@@ -1,9 +1,10 @@
 //! Cushions: overlap, mirror, push back.
 
-use super::Particle;
 use super::observer::Observer;
+use super::{Particle, books};
+use crate::physics::Vector3;
 use crate::physics::cushion_impulse;
-use crate::recording::{EventKind, Wall};
+use crate::recording::{Account, EventKind, Wall};
 use crate::scene::Cushions;
 
 /// The walls in the slides' order, +x -x +z -z, then +y -y which the slides do not have.
@@ -24,10 +25,10 @@ const ORDER: [Wall; 6] = [
 /// DEVIATES: the slides' cushions are elastic; here `2.0` stands as `1.0 + e`, the same bits at
 /// e = 1. With `half_height` the chain goes on to the walls +y and -y.
 #[inline]
-pub(super) fn bounce<const PUSH_OUT: bool>(
+pub(super) fn bounce<const PUSH_OUT: bool, O: Observer>(
     particles: &mut [Particle],
     effect: &Cushions,
-    observer: &mut impl Observer,
+    observer: &mut O,
 ) {
     let walls = if effect.half_height.is_some() { 6 } else { 4 };
     let half = effect.half_extents();
@@ -41,8 +42,21 @@ pub(super) fn bounce<const PUSH_OUT: bool>(
             go_through::<PUSH_OUT>(particle, &ORDER[..walls], &half, effect.restitution)
         {
             observer.note(EventKind::Cushion { body, wall }, impulse);
+            if O::BOOKS {
+                let inward = inward(wall);
+                let entry = books::cushion(effect.restitution, particle.mass, impulse, &inward);
+                observer.book(Account::Cushions, entry);
+            }
         }
     }
+}
+
+/// The normal of a wall, into the box.
+pub(super) fn inward(wall: Wall) -> Vector3 {
+    let (axis, side) = wall.axis_and_side();
+    let mut inward = Vector3::zeros();
+    inward[axis] = -side;
+    inward
 }
 
 /// The chain; the wall that the ball runs into, with the impulse.

@@ -1,10 +1,10 @@
 //! Forces, kick, drift and rest. What a body does by itself is a function of that body; what
 //! joins bodies, one of all of them.
 
-use super::Particle;
 use super::observer::Observer;
+use super::{Particle, books};
 use crate::physics::{SpringDamper, Vector3, attraction, length};
-use crate::recording::EventKind;
+use crate::recording::{Account, EventKind};
 use crate::scene::{Attraction, Drag, Rest};
 
 /// Slides' `resetForce()`.
@@ -71,12 +71,16 @@ pub(super) fn drift(particle: &mut Particle, dt: f64) {
 
 /// Last line of slides' `simulate()`: slower than the rest speed is standing.
 #[inline]
-pub(super) fn rest(particles: &mut [Particle], effect: Rest, observer: &mut impl Observer) {
+pub(super) fn rest<O: Observer>(particles: &mut [Particle], effect: Rest, observer: &mut O) {
     for (body, particle) in particles.iter_mut().enumerate() {
         let speed = length(&particle.velocity);
         if speed < effect.speed {
             if speed > 0.0 {
                 observer.note(EventKind::Rest { body }, particle.mass * speed);
+                if O::BOOKS {
+                    let entry = books::rest(particle.mass, &particle.velocity);
+                    observer.book(Account::Rest, entry);
+                }
             }
             particle.velocity = Vector3::zeros();
         }

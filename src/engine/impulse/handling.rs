@@ -1,9 +1,9 @@
 //! How a step deals with what its bodies meet.
 
-use super::Particle;
 use super::motion::Motion;
 use super::observer::Observer;
 use super::phases::Phases;
+use super::{Particle, books};
 
 /// What a step took.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -17,13 +17,13 @@ pub(super) struct Taken {
 /// A way to deal with rests, cushions and contacts.
 pub(super) trait Handling {
     /// One step of length `dt`.
-    fn step(
+    fn step<O: Observer>(
         &mut self,
         motion: &mut impl Motion,
         phases: &Phases,
         particles: &mut [Particle],
         dt: f64,
-        observer: &mut impl Observer,
+        observer: &mut O,
     ) -> Taken;
 }
 
@@ -33,16 +33,22 @@ pub struct Overlap<const PUSH_OUT: bool>;
 
 impl<const PUSH_OUT: bool> Handling for Overlap<PUSH_OUT> {
     #[inline]
-    fn step(
+    fn step<O: Observer>(
         &mut self,
         motion: &mut impl Motion,
         phases: &Phases,
         particles: &mut [Particle],
         dt: f64,
-        observer: &mut impl Observer,
+        observer: &mut O,
     ) -> Taken {
+        let before = if O::BOOKS {
+            particles.to_vec()
+        } else {
+            Vec::new()
+        };
         let passes = motion.advance(phases, particles, dt);
-        phases.settle::<PUSH_OUT>(particles, observer);
+        books::motion(phases, &before, particles, dt, observer);
+        phases.settle::<PUSH_OUT, O>(particles, observer);
         if phases.contact.is_some() || phases.cushions.is_some() {
             motion.forget();
         }

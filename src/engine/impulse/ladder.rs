@@ -4,7 +4,9 @@ use super::dormand_prince::DormandPrince;
 use super::handling::Overlap;
 use super::motion::{Euler, Verlet};
 use super::phases::Phases;
+use super::robust::{self, Robust};
 use super::runge_kutta::RungeKutta;
+use super::scheme::Stepped;
 use super::simulation::ImpulseSimulation;
 use super::sweep::Sweep;
 use crate::engine::spec::{DragRule, Impacts, ImpulseSettings, Integrator};
@@ -26,15 +28,15 @@ pub fn simulation(
     macro_rules! rung {
         ($motion:ty) => {
             match impacts {
-                Impacts::Overlap => Box::new(ImpulseSimulation::<$motion, Overlap<true>>::with(
-                    scene, grid, drag,
-                )),
-                Impacts::OverlapInPlace => Box::new(
-                    ImpulseSimulation::<$motion, Overlap<false>>::with(scene, grid, drag),
+                Impacts::Overlap => Box::new(
+                    ImpulseSimulation::<Stepped<$motion, Overlap<true>>>::with(scene, grid, drag),
                 ),
-                Impacts::Swept => {
-                    Box::new(ImpulseSimulation::<$motion, Sweep>::with(scene, grid, drag))
-                }
+                Impacts::OverlapInPlace => Box::new(ImpulseSimulation::<
+                    Stepped<$motion, Overlap<false>>,
+                >::with(scene, grid, drag)),
+                Impacts::Swept | Impacts::Together => Box::new(ImpulseSimulation::<
+                    Stepped<$motion, Sweep>,
+                >::with(scene, grid, drag)),
             }
         };
     }
@@ -43,10 +45,13 @@ pub fn simulation(
         (Integrator::SymplecticEuler, DragRule::Exponential) => rung!(Euler<true>),
         (Integrator::VelocityVerlet, _) => rung!(Verlet),
         (Integrator::RungeKutta4, _) => rung!(RungeKutta),
+        (Integrator::EnergyMomentum, _) => {
+            Box::new(ImpulseSimulation::<Robust>::with(scene, grid, drag))
+        }
         // Only the sweep takes steps of an integrator's own choice.
-        (Integrator::DormandPrince, _) => Box::new(
-            ImpulseSimulation::<DormandPrince, Sweep>::with(scene, grid, drag),
-        ),
+        (Integrator::DormandPrince, _) => Box::new(ImpulseSimulation::<
+            Stepped<DormandPrince, Sweep>,
+        >::with(scene, grid, drag)),
     }
 }
 
@@ -54,7 +59,10 @@ pub fn simulation(
 #[must_use]
 pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let phases = Phases::of(scene, settings.drag);
-    let swept = settings.impacts == Impacts::Swept;
+    if settings.integrator == Integrator::EnergyMomentum {
+        return robust::plan::plan(&phases);
+    }
+    let swept = matches!(settings.impacts, Impacts::Swept | Impacts::Together);
     let forces = [
         present(phases.forces, "clear", "forces to zero".to_owned()),
         present(
@@ -77,7 +85,7 @@ pub fn phases(scene: &Scene, settings: ImpulseSettings) -> Vec<Phase> {
     let motion = motion_phases(&phases, settings.integrator);
     let push = match settings.impacts {
         Impacts::Overlap => true,
-        Impacts::OverlapInPlace | Impacts::Swept => false,
+        Impacts::OverlapInPlace | Impacts::Swept | Impacts::Together => false,
     };
     let walls = |half_height: Option<f64>| if half_height.is_some() { 6 } else { 4 };
     let cushions = phases.cushions.map(|cushions| match (swept, push) {
@@ -153,7 +161,8 @@ fn motion_phases(phases: &Phases, integrator: Integrator) -> [Option<Phase>; 3] 
             None,
             None,
         ],
-        Integrator::DormandPrince => [
+        // `robust` has a plan of its own.
+        Integrator::DormandPrince | Integrator::EnergyMomentum => [
             present(
                 true,
                 "motion",

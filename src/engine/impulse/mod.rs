@@ -8,18 +8,22 @@
 //! `runge_kutta` and `dormand_prince` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
 //! which of them a name means.
 
+mod books;
 mod contacts;
 mod cushions;
 mod dormand_prince;
 mod forces;
 mod handling;
 mod ladder;
+mod meeting;
 mod motion;
 mod notes;
 mod observer;
 mod path;
 mod phases;
+mod robust;
 mod runge_kutta;
+mod scheme;
 mod simulation;
 mod sweep;
 

@@ -3,6 +3,24 @@
 use super::Particle;
 use crate::physics::Vector3;
 
+/// Where a body is within a step, and bounds on how it bends.
+pub(super) trait Way {
+    /// Place at the start.
+    fn start(&self) -> &Vector3;
+
+    /// Place and velocity at a time since the start.
+    fn at(&self, t: f64) -> (Vector3, Vector3);
+
+    /// How much the velocity between two ways can change in a unit of time.
+    fn bend_against(&self, other: &Self) -> f64;
+
+    /// The same along one axis.
+    fn bend_along(&self, axis: usize) -> f64;
+
+    /// A bound on how far it goes in that time.
+    fn travel(&self, time: f64) -> f64;
+}
+
 /// A cubic through the places and velocities at both ends of a step.
 ///
 /// Equation: `x(t) = x0 + v0 t + a t²/2 + j t³/6` with `j = (6 dv h - 12 dx)/h³`,
@@ -42,36 +60,38 @@ impl Path {
         }
     }
 
-    /// Place and velocity at a time since the start.
-    pub(super) fn at(&self, t: f64) -> (Vector3, Vector3) {
+    /// Acceleration, linear in time, at both ends.
+    fn accelerations(&self) -> [Vector3; 2] {
+        [self.bend, self.bend + self.jerk * self.length]
+    }
+}
+
+impl Way for Path {
+    fn start(&self) -> &Vector3 {
+        &self.position
+    }
+
+    fn at(&self, t: f64) -> (Vector3, Vector3) {
         let bent = self.bend + self.jerk * (t / 3.0);
         let position = self.position + (self.velocity + bent * (0.5 * t)) * t;
         let velocity = self.velocity + (self.bend + self.jerk * (0.5 * t)) * t;
         (position, velocity)
     }
 
-    /// Acceleration, linear in time, at both ends.
-    fn accelerations(&self) -> [Vector3; 2] {
-        [self.bend, self.bend + self.jerk * self.length]
-    }
-
-    /// How much the velocity between two paths can change in a unit of time.
-    pub(super) fn bend_against(&self, other: &Self) -> f64 {
+    fn bend_against(&self, other: &Self) -> f64 {
         let (own, others) = (self.accelerations(), other.accelerations());
         (own[0] - others[0]).norm().max((own[1] - others[1]).norm())
     }
 
-    /// The same along one axis.
-    pub(super) fn bend_along(&self, axis: usize) -> f64 {
+    fn bend_along(&self, axis: usize) -> f64 {
         let [start, end] = self.accelerations();
         start[axis].abs().max(end[axis].abs())
     }
 
-    /// A bound on how far it goes.
-    pub(super) fn travel(&self) -> f64 {
+    fn travel(&self, time: f64) -> f64 {
         let [start, end] = self.accelerations();
         let bend = start.norm().max(end.norm());
-        (self.velocity.norm() + 0.5 * bend * self.length) * self.length
+        (self.velocity.norm() + 0.5 * bend * time) * time
     }
 }
 
@@ -100,6 +120,6 @@ mod tests {
             assert!((position.x - x(t)).abs() < 1e-14 && (velocity.x - v(t)).abs() < 1e-14);
         }
         assert!((path.bend_along(0) - 5.0).abs() < 1e-13, "from -3 to 5");
-        assert!(path.travel() >= 4.0);
+        assert!(path.travel(2.0) >= 4.0);
     }
 }

@@ -2,7 +2,7 @@
 //! phase that is not there.
 
 use super::observer::Observer;
-use super::{Particle, contacts, cushions, forces};
+use super::{Particle, books, contacts, cushions, forces};
 use crate::engine::spec::DragRule;
 use crate::physics::{SpringDamper, Vector3};
 use crate::scene::{Attraction, Contact, Cushions, Drag, Rest, Scene};
@@ -105,19 +105,31 @@ impl Phases {
 
     /// Rests, cushions and contacts as they are found at the end of a step.
     #[inline]
-    pub(super) fn settle<const PUSH_OUT: bool>(
+    pub(super) fn settle<const PUSH_OUT: bool, O: Observer>(
         &self,
         particles: &mut [Particle],
-        observer: &mut impl Observer,
+        observer: &mut O,
     ) {
         if let Some(rest) = self.rest {
             forces::rest(particles, rest, observer);
         }
+        // Impulses leave the potential energy alone; what it changes by is pushing out.
+        let potential = |particles: &[Particle]| {
+            if O::BOOKS {
+                books::potential_energy(self, particles)
+            } else {
+                0.0
+            }
+        };
+        let before = potential(particles);
         if let Some(cushions) = &self.cushions {
-            cushions::bounce::<PUSH_OUT>(particles, cushions, observer);
+            cushions::bounce::<PUSH_OUT, O>(particles, cushions, observer);
         }
         if let Some(contact) = self.contact {
-            contacts::collide::<PUSH_OUT>(particles, contact, observer);
+            contacts::collide::<PUSH_OUT, O>(particles, contact, observer);
+        }
+        if O::BOOKS {
+            books::push_out(observer, before, potential(particles));
         }
     }
 

@@ -1,31 +1,29 @@
 //! The simulation: one scheme on one scene, step by step.
 
-use super::handling::{Handling, Overlap};
-use super::motion::{Euler, Motion};
-use super::observer::{Nobody, Observer, Scribe};
+use super::observer::{Bookkeeper, Nobody, Observer, Scribe};
 use super::phases::Phases;
+use super::scheme::{Lecture, Scheme};
 use super::{Particle, particles};
 use crate::engine::spec::DragRule;
 use crate::engine::{Simulation, StepGrid};
 use crate::physics::BodyState;
-use crate::recording::{EventLog, Outcome, Work};
+use crate::recording::{Concession, EventLog, Ledger, Outcome, Work};
 use crate::scene::Scene;
 
 /// The hand-written impulse solver on one scene; without parameters, the lecture's.
 ///
 /// Symplectic Euler for motion, impulses at the first overlap, push-out. Order 1 in the step.
-/// Another integrator `M` or another way `H` to deal with impacts makes another rung of the
-/// ladder; the phases are the same.
+/// Another scheme `S` makes another rung of the ladder; the phases are the same.
 /// Source: lecture, `doSimulation()` of "충돌" (collisions) and of "당구게임" (billiards game).
 #[derive(Debug, Clone)]
-pub struct ImpulseSimulation<M = Euler<false>, H = Overlap<true>> {
+pub struct ImpulseSimulation<S = Lecture> {
     particles: Vec<Particle>,
     phases: Phases,
-    motion: M,
-    handling: H,
+    scheme: S,
     grid: StepGrid,
     sample: usize,
     work: Work,
+    ledger: Option<Ledger>,
 }
 
 impl ImpulseSimulation {
@@ -37,19 +35,17 @@ impl ImpulseSimulation {
 }
 
 #[allow(private_bounds, reason = "the rungs are made here alone")]
-impl<M: Motion + Default, H: Handling + Default> ImpulseSimulation<M, H> {
+impl<S: Scheme> ImpulseSimulation<S> {
     pub(super) fn with(scene: &Scene, grid: StepGrid, drag: DragRule) -> Self {
         let particles = particles(scene);
-        let mut motion = M::default();
-        motion.prepare(size(&particles), scene.duration, grid.step);
         Self {
+            scheme: S::of(scene, &particles, grid.step),
             particles,
             phases: Phases::of(scene, drag),
-            motion,
-            handling: H::default(),
             grid,
             sample: 0,
             work: Work::default(),
+            ledger: None,
         }
     }
 
@@ -60,13 +56,23 @@ impl<M: Motion + Default, H: Handling + Default> ImpulseSimulation<M, H> {
         }
     }
 
+    /// Takes steps up to a sample, each told the time at its end.
+    fn go_on(&mut self, sample: usize, mut step: impl FnMut(&mut Self, f64)) {
+        while self.sample < sample {
+            self.sample += 1;
+            for count in 1..=self.grid.steps_per_sample {
+                let time = self.grid.time(self.sample, count);
+                step(self, time);
+            }
+        }
+    }
+
     #[inline]
     fn step(&mut self, observer: &mut impl Observer) {
         let (phases, particles) = (&self.phases, &mut self.particles);
-        let dt = self.grid.step;
         let taken = self
-            .handling
-            .step(&mut self.motion, phases, particles, dt, observer);
+            .scheme
+            .step(phases, particles, self.grid.step, observer);
         self.work.steps += 1;
         self.work.pair_tests += taken.pairs;
         self.work.force_evaluations += taken.passes * phases.forces_a_pass(particles.len() as u64);
@@ -74,24 +80,24 @@ impl<M: Motion + Default, H: Handling + Default> ImpulseSimulation<M, H> {
 }
 
 #[allow(private_bounds, reason = "the rungs are made here alone")]
-impl<M: Motion + Default, H: Handling + Default> Simulation for ImpulseSimulation<M, H> {
-    fn advance_to(&mut self, sample: usize, log: Option<&mut EventLog>) -> Option<Outcome> {
+impl<S: Scheme> Simulation for ImpulseSimulation<S> {
+    fn advance_to(&mut self, sample: usize, mut log: Option<&mut EventLog>) -> Option<Outcome> {
+        if let Some(mut ledger) = self.ledger.take() {
+            self.go_on(sample, |this, time| {
+                let scribe = log.as_deref_mut().map(|log| Scribe { log, time });
+                let ledger = &mut ledger;
+                this.step(&mut Bookkeeper { ledger, scribe });
+            });
+            self.ledger = Some(ledger);
+            return None;
+        }
         let Some(log) = log else {
             let intervals = sample.saturating_sub(self.sample) as u64;
             self.take_steps(intervals * self.grid.steps_per_sample);
             self.sample = self.sample.max(sample);
             return None;
         };
-        while self.sample < sample {
-            self.sample += 1;
-            for step in 1..=self.grid.steps_per_sample {
-                let mut scribe = Scribe {
-                    log,
-                    time: self.grid.time(self.sample, step),
-                };
-                self.step(&mut scribe);
-            }
-        }
+        self.go_on(sample, |this, time| this.step(&mut Scribe { log, time }));
         None
     }
 
@@ -110,20 +116,23 @@ impl<M: Motion + Default, H: Handling + Default> Simulation for ImpulseSimulatio
             particle.position = state.position;
             particle.velocity = state.velocity;
         }
-        self.motion.forget();
+        self.scheme.forget();
     }
 
     fn work(&self) -> Work {
         self.work
     }
-}
 
-/// A length of the size of the scene: that of the largest body, or of the box of all of them.
-fn size(particles: &[Particle]) -> f64 {
-    let largest = particles.iter().fold(0.0_f64, |most, p| most.max(p.radius));
-    let first = particles.first().map(|p| (p.position, p.position));
-    let boxed = particles.iter().fold(first, |corners, p| {
-        corners.map(|(low, high)| (low.inf(&p.position), high.sup(&p.position)))
-    });
-    largest.max(boxed.map_or(0.0, |(low, high)| (high - low).norm()))
+    fn keep_ledger(&mut self) -> bool {
+        self.ledger = Some(Ledger::default());
+        true
+    }
+
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref()
+    }
+
+    fn concessions(&self) -> Vec<Concession> {
+        self.scheme.concessions()
+    }
 }

@@ -1,15 +1,15 @@
 //! Impacts, cushions and rests at the time at which they happen within a step.
 
-use super::contacts::{approach, hit};
+use super::contacts::hit;
 use super::handling::{Handling, Taken, pairs};
+use super::meeting::{Along, contact, cushion, slowed};
 use super::motion::Motion;
 use super::observer::Observer;
-use super::path::Path;
+use super::path::{Path, Way};
 use super::phases::Phases;
-use super::{Particle, cushions};
-use crate::physics::closing::{Opening, Search, first_closing};
+use super::{Particle, books, cushions};
 use crate::physics::{Vector3, length};
-use crate::recording::{EventKind, Wall};
+use crate::recording::{Account, EventKind, Wall};
 
 /// Impacts in one step, a body, after which what is left of it is dealt with by overlap: bounces
 /// that pile up, as on a floor, have no end.
@@ -37,13 +37,13 @@ struct Next {
 }
 
 impl Handling for Sweep {
-    fn step(
+    fn step<O: Observer>(
         &mut self,
         motion: &mut impl Motion,
         phases: &Phases,
         particles: &mut [Particle],
         dt: f64,
-        observer: &mut impl Observer,
+        observer: &mut O,
     ) -> Taken {
         let mut taken = Taken::default();
         let mut left = dt;
@@ -63,11 +63,13 @@ impl Handling for Sweep {
                 taken.pairs += pairs(particles.len() as u64);
             }
             let Some(next) = self.first(phases, length, INSTANT * dt) else {
+                books::motion(phases, &self.start, particles, length, observer);
                 left -= length;
                 continue;
             };
             if impacts == 0 {
-                phases.settle::<true>(particles, observer);
+                books::motion(phases, &self.start, particles, length, observer);
+                phases.settle::<true, O>(particles, observer);
                 motion.forget();
                 left -= length;
                 continue;
@@ -77,6 +79,7 @@ impl Handling for Sweep {
             motion.forget();
             if next.time > 0.0 {
                 taken.passes += motion.advance(phases, particles, next.time);
+                books::motion(phases, &self.start, particles, next.time, observer);
                 left -= next.time;
             }
             happen(next.kind, phases, particles, left, observer);
@@ -98,7 +101,16 @@ impl Sweep {
             }
         }));
         self.travel.clear();
-        self.travel.extend(self.paths.iter().map(Path::travel));
+        self.travel
+            .extend(self.paths.iter().map(|path| path.travel(length)));
+    }
+
+    fn along(&self, body: usize) -> Along<'_, Path> {
+        Along {
+            path: &self.paths[body],
+            radius: self.start[body].radius,
+            travel: self.travel[body],
+        }
     }
 
     /// The first event on the paths; of simultaneous ones contacts, then cushions, then rests.
@@ -118,10 +130,9 @@ impl Sweep {
         if phases.contact.is_some() {
             for a in 0..self.paths.len() {
                 for b in a + 1..self.paths.len() {
-                    offer(
-                        self.contact(a, b, length, instant),
-                        EventKind::Contact { a, b },
-                    );
+                    let pair = [a, b].map(|body| self.along(body));
+                    let time = contact(&pair, length, instant);
+                    offer(time, EventKind::Contact { a, b });
                 }
             }
         }
@@ -129,7 +140,7 @@ impl Sweep {
             let half = cushions.half_extents();
             for body in 0..self.paths.len() {
                 for wall in Wall::ALL {
-                    let time = self.cushion(body, wall, half, length, instant);
+                    let time = cushion(&self.along(body), wall, half, length, instant);
                     offer(time, EventKind::Cushion { body, wall });
                 }
             }
@@ -141,133 +152,61 @@ impl Sweep {
         }
         first
     }
-
-    fn contact(&self, a: usize, b: usize, length: f64, instant: f64) -> Option<f64> {
-        let (one, other) = (&self.paths[a], &self.paths[b]);
-        let reach = self.start[a].radius + self.start[b].radius;
-        let apart = self.start[b].position - self.start[a].position;
-        let room = reach + self.travel[a] + self.travel[b];
-        if apart.norm_squared() > room * room {
-            return None;
-        }
-        let bend = one.bend_against(other);
-        closing(length, instant, |t| {
-            let ((xa, va), (xb, vb)) = (one.at(t), other.at(t));
-            let distance = (xb - xa).norm();
-            Opening {
-                width: distance - reach,
-                rate: approach(&(xa - xb), distance, &va, &vb),
-                bend,
-            }
-        })
-    }
-
-    fn cushion(
-        &self,
-        body: usize,
-        wall: Wall,
-        half: [f64; 3],
-        length: f64,
-        instant: f64,
-    ) -> Option<f64> {
-        let (axis, side) = wall.axis_and_side();
-        let (path, start) = (&self.paths[body], &self.start[body]);
-        let room = half[axis] - start.radius;
-        if room - start.position[axis] * side > self.travel[body] {
-            return None;
-        }
-        let bend = path.bend_along(axis);
-        closing(length, instant, |t| {
-            let (x, v) = path.at(t);
-            Opening {
-                width: room - x[axis] * side,
-                rate: -v[axis] * side,
-                bend,
-            }
-        })
-    }
-}
-
-/// The first time at which a gap closes, none if it does not up to the end.
-fn closing(length: f64, instant: f64, at: impl Fn(f64) -> Opening<f64>) -> Option<f64> {
-    let mut from = 0.0;
-    // A search rests after two hundred steps, each of them safe; a second round is for grazes.
-    for _ in 0..2 {
-        match first_closing(length - from, instant, |t| at(from + t)) {
-            Search::Closes(time) if from + time <= length => return Some(from + time),
-            Search::OpenUntil(time) => {
-                from += time;
-                let now = at(from);
-                // Places that are large beside the gap do not move in so short a time: the search
-                // stands still where the gap is less than their rounding.
-                if now.rate < 0.0 && now.width <= -now.rate * instant {
-                    return Some(from);
-                }
-            }
-            Search::Closes(_) | Search::Open => return None,
-        }
-    }
-    None
-}
-
-/// When a moving body has become slower than that.
-fn slowed(path: &Path, speed: f64, until: f64) -> Option<f64> {
-    let at = |t: f64| length(&path.at(t).1);
-    if at(0.0) == 0.0 || at(until) >= speed {
-        return None;
-    }
-    if at(0.0) < speed {
-        return Some(0.0);
-    }
-    let (mut fast, mut slow) = (0.0, until);
-    for _ in 0..60 {
-        let middle = 0.5 * (fast + slow);
-        if at(middle) < speed {
-            slow = middle;
-        } else {
-            fast = middle;
-        }
-    }
-    Some(slow)
 }
 
 /// Lets an event happen to the particles, `left` before the end of the step.
-fn happen(
+fn happen<O: Observer>(
     kind: EventKind,
     phases: &Phases,
     particles: &mut [Particle],
     left: f64,
-    observer: &mut impl Observer,
+    observer: &mut O,
 ) {
-    let impulse = match kind {
+    match kind {
         EventKind::Contact { a, b } => {
+            let Some(contact) = phases.contact else {
+                return;
+            };
             let (head, tail) = particles.split_at_mut(b);
-            phases
-                .contact
-                .and_then(|contact| hit(&mut head[a], &mut tail[0], contact.restitution))
+            let (one, other) = (&mut head[a], &mut tail[0]);
+            if let Some(impulse) = hit(one, other, contact.restitution) {
+                observer.note_before_end(kind, impulse, left);
+                let masses = [one.mass, other.mass];
+                let entry = books::contact(contact.restitution, masses, impulse);
+                observer.book(Account::Contacts, entry);
+            }
         }
-        EventKind::Cushion { body, wall } => phases.cushions.and_then(|cushions| {
+        EventKind::Cushion { body, wall } => {
+            let Some(cushions) = phases.cushions else {
+                return;
+            };
             let (axis, side) = wall.axis_and_side();
-            cushions::mirror(&mut particles[body], axis, side, cushions.restitution)
-        }),
-        EventKind::Rest { body } => Some(stop(&mut particles[body])),
-    };
-    if let Some(impulse) = impulse {
-        observer.note_before_end(kind, impulse, left);
+            let (particle, e) = (&mut particles[body], cushions.restitution);
+            if let Some(impulse) = cushions::mirror(particle, axis, side, e) {
+                observer.note_before_end(kind, impulse, left);
+                let entry = books::cushion(e, particle.mass, impulse, &cushions::inward(wall));
+                observer.book(Account::Cushions, entry);
+            }
+        }
+        EventKind::Rest { body } => stop(&mut particles[body], body, left, observer),
     }
     let Some(rest) = phases.rest else { return };
     let (first, second) = kind.bodies();
     for body in std::iter::once(first).chain(second) {
         let speed = length(&particles[body].velocity);
         if speed > 0.0 && speed < rest.speed {
-            let impulse = stop(&mut particles[body]);
-            observer.note_before_end(EventKind::Rest { body }, impulse, left);
+            stop(&mut particles[body], body, left, observer);
         }
     }
 }
 
-fn stop(particle: &mut Particle) -> f64 {
+/// Stops a body, `left` before the end of the step.
+pub(super) fn stop(particle: &mut Particle, body: usize, left: f64, observer: &mut impl Observer) {
     let impulse = particle.mass * length(&particle.velocity);
+    observer.note_before_end(EventKind::Rest { body }, impulse, left);
+    observer.book(
+        Account::Rest,
+        books::rest(particle.mass, &particle.velocity),
+    );
     particle.velocity = Vector3::zeros();
-    impulse
 }

@@ -14,10 +14,12 @@ pub enum Integrator {
     RungeKutta4,
     /// Seven stages and steps by their own error, swept impacts. Order 5 in the longest step.
     DormandPrince,
+    /// Closed forms under drag and dampers, forces that keep the energy in any step. Order 2.
+    EnergyMomentum,
 }
 
 impl Integrator {
-    /// All of them.
+    /// Those that a search may combine with others; the one of `robust` comes with all of it.
     pub const ALL: [Self; 4] = [
         Self::SymplecticEuler,
         Self::VelocityVerlet,
@@ -51,10 +53,12 @@ pub enum Impacts {
     OverlapInPlace,
     /// At the time of impact within the step.
     Swept,
+    /// The same, with all of one instant and all that stay in touch solved together.
+    Together,
 }
 
 impl Impacts {
-    /// All of them.
+    /// Those that a search may combine with others; the one of `robust` comes with all of it.
     pub const ALL: [Self; 3] = [Self::Overlap, Self::OverlapInPlace, Self::Swept];
 }
 
@@ -92,6 +96,11 @@ impl ImpulseSettings {
                 impacts: Impacts::Swept,
                 ..self
             },
+            Integrator::EnergyMomentum => Self {
+                drag: DragRule::Exponential,
+                impacts: Impacts::Together,
+                ..self
+            },
         }
     }
 
@@ -103,6 +112,7 @@ impl ImpulseSettings {
             Integrator::VelocityVerlet => "velocity-verlet",
             Integrator::RungeKutta4 => "runge-kutta-4",
             Integrator::DormandPrince => "dormand-prince",
+            Integrator::EnergyMomentum => "energy-momentum",
         };
         let drag = match self.drag {
             DragRule::Force => "force",
@@ -112,6 +122,7 @@ impl ImpulseSettings {
             Impacts::Overlap => "overlap",
             Impacts::OverlapInPlace => "overlap-in-place",
             Impacts::Swept => "swept",
+            Impacts::Together => "together",
         };
         vec![
             ("integrator", integrator.to_owned()),
@@ -125,7 +136,7 @@ impl ImpulseSettings {
     pub fn order(self) -> u8 {
         match self.integrator {
             Integrator::SymplecticEuler => 1,
-            Integrator::VelocityVerlet => 2,
+            Integrator::VelocityVerlet | Integrator::EnergyMomentum => 2,
             Integrator::RungeKutta4 => 4,
             Integrator::DormandPrince => 5,
         }
@@ -137,7 +148,7 @@ impl ImpulseSettings {
     pub fn order_through_impacts(self) -> u8 {
         match self.impacts {
             Impacts::Overlap | Impacts::OverlapInPlace => 1,
-            Impacts::Swept => self.order().min(4),
+            Impacts::Swept | Impacts::Together => self.order().min(4),
         }
     }
 
@@ -147,6 +158,9 @@ impl ImpulseSettings {
             Integrator::VelocityVerlet => "Velocity Verlet",
             Integrator::RungeKutta4 => "Runge-Kutta of order 4",
             Integrator::DormandPrince => "Dormand-Prince 5(4) with steps by their own error",
+            Integrator::EnergyMomentum => {
+                "Closed forms and energy-momentum steps, as short as each effect asks for"
+            }
         };
         let drag = match self.drag {
             DragRule::Force => "",
@@ -158,6 +172,10 @@ impl ImpulseSettings {
             }
             Impacts::OverlapInPlace => "impulses at the first overlap, no push-out",
             Impacts::Swept => "impulses at the time of impact",
+            Impacts::Together => {
+                "impulses at the time of impact, those of one instant and pushes that last solved \
+                 together"
+            }
         };
         format!("{motion}{drag}, {impacts}.")
     }

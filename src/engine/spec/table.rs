@@ -96,6 +96,15 @@ pub fn engines() -> Vec<EngineSpec> {
             "Dormand-Prince 5(4), steps by their own error, impacts at their time",
             rung(Integrator::DormandPrince, DragRule::Force, Impacts::Swept),
         ),
+        row(
+            "robust",
+            "survives everything: steps by each effect's limit, contacts solved together",
+            rung(
+                Integrator::EnergyMomentum,
+                DragRule::Exponential,
+                Impacts::Together,
+            ),
+        ),
     ]
 }
 

@@ -1,10 +1,10 @@
 //! Contacts that press: kept closed from step to step.
 
-use super::cholesky::Cholesky;
 use super::scalar::{Real, Triple};
 use super::series::{as_real, contact_matrix};
 use super::simulation::ForcesSimulation;
 use super::touch::{Arms, Touch, arms};
+use crate::physics::cholesky::Cholesky;
 
 /// Operations for an entry of the matrix of contacts.
 pub(super) const OPERATIONS_AN_ENTRY: f64 = 12.0;

@@ -1,7 +1,5 @@
 //! What happens at one instant: impacts in the model's order, what sticks, what presses.
 
-use super::cholesky::Cholesky;
-use super::complementarity::{Role, pressing};
 use super::held::OPERATIONS_AN_ENTRY;
 use super::law::Law;
 use super::scalar::{Real, Triple, dot, minus, size};
@@ -9,6 +7,8 @@ use super::search::{Cause, Fresh};
 use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
 use crate::engine::exact::order::TieOrder;
+use crate::physics::cholesky::Cholesky;
+use crate::physics::complementarity::{Role, pressing};
 
 /// Impacts at one instant past which the rest is taken as one inelastic impact of all.
 const IMPACTS_MAX: usize = 20_000;

@@ -18,8 +18,6 @@
 mod accuracy;
 mod bernstein;
 mod certify;
-mod cholesky;
-mod complementarity;
 mod held;
 mod impacts;
 mod law;

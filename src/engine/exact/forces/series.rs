@@ -9,10 +9,10 @@
 //! Source: Jorba and Zou 2005, "A software package for the numerical integration of ODEs by
 //! means of high-order Taylor methods"; Moore 1966.
 
-use super::cholesky::Cholesky;
 use super::law::{Law, Link};
 use super::scalar::{Real, Triple, add_scaled, dot, minus};
 use super::touch::{Arms, Touch, arms};
+use crate::physics::cholesky::Cholesky;
 
 /// The series of one link.
 #[derive(Debug, Clone)]

@@ -1,7 +1,6 @@
 //! The simulation: steps, the events that end them early, samples in between.
 
 use super::accuracy::{Accuracy, UNDETERMINED_BOUNCE_HEIGHT};
-use super::cholesky::Cholesky;
 use super::impacts::{Aftermath, Instant, closed_below};
 use super::law::Law;
 use super::refuse::check;
@@ -16,6 +15,7 @@ use crate::engine::exact::effort::Effort;
 use crate::engine::exact::order::TieOrder;
 use crate::error::Result;
 use crate::physics::BodyState;
+use crate::physics::cholesky::Cholesky;
 use crate::recording::{CollapseReason, Event, EventLog, Outcome, Work, initial_states};
 use crate::scene::Scene;
 

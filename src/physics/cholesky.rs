@@ -1,23 +1,24 @@
 //! Solving with a small symmetric positive matrix.
 
-use super::scalar::Real;
+use super::real::Real;
 
 /// The lower triangle L of `A = L Lᵀ`, grown row by row.
 #[derive(Debug, Clone)]
-pub(super) struct Cholesky<T> {
+pub struct Cholesky<T> {
     /// Row i holds i + 1 entries.
     rows: Vec<Vec<T>>,
 }
 
 impl<T: Real> Cholesky<T> {
     /// Of no rows.
-    pub(super) fn empty() -> Self {
+    #[must_use]
+    pub fn empty() -> Self {
         Self { rows: Vec::new() }
     }
 
     /// Factors the matrix `entry(i, j)`, of which it reads `j <= i`, without the rows that
     /// depend on rows before them; with the rows that it kept.
-    pub(super) fn of(size: usize, entry: impl Fn(usize, usize) -> T) -> (Self, Vec<usize>) {
+    pub fn of(size: usize, entry: impl Fn(usize, usize) -> T) -> (Self, Vec<usize>) {
         let mut factor = Self::empty();
         let mut kept = Vec::with_capacity(size);
         for i in 0..size {
@@ -35,7 +36,7 @@ impl<T: Real> Cholesky<T> {
     /// # Errors
     /// The row depends on the rows before it, and nothing is added: its pivot falls below
     /// `1e-11` of its diagonal, where two thirds of a double's digits are gone.
-    pub(super) fn grow(&mut self, entry: impl Fn(usize) -> T) -> Result<(), ()> {
+    pub fn grow(&mut self, entry: impl Fn(usize) -> T) -> Result<(), ()> {
         let size = self.rows.len();
         let mut own: Vec<T> = Vec::with_capacity(size + 1);
         for (j, row) in self.rows.iter().enumerate() {
@@ -53,12 +54,12 @@ impl<T: Real> Cholesky<T> {
     }
 
     /// Forgets all rows from that one on.
-    pub(super) fn truncate(&mut self, size: usize) {
+    pub fn truncate(&mut self, size: usize) {
         self.rows.truncate(size);
     }
 
     /// Solves `A x = right` in place.
-    pub(super) fn solve(&self, right: &mut [T]) {
+    pub fn solve(&self, right: &mut [T]) {
         for (i, row) in self.rows.iter().enumerate() {
             right[i] = subtract_products(right[i], row, &right[..i]) / row[i];
         }

@@ -7,7 +7,7 @@ const CLOSED: f64 = 1e-9;
 
 /// What becomes of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub enum Role {
     /// It opens, or could do so.
     Free,
     /// It presses.
@@ -17,66 +17,39 @@ pub(super) enum Role {
     Redundant,
 }
 
-/// Finds the pressing ones: forces `f >= 0`, rates `A f + b >= 0`, one of the two zero for each.
+/// Finds the roles: forces `f >= 0`, rates `A f + b >= 0`, one of the two zero for each.
 ///
 /// `matrix(i, j)` symmetric and positive semi-definite. `warm` is a guess of the answer. It is
 /// the minimum of `f.A f/2 + b.f` over `f >= 0`, found by the active-set method for
 /// non-negative least squares: finite, since each round lowers the minimum. A contact that joins
 /// costs the square of their number, one that leaves at most the cube.
 /// Source: Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23.
-pub(super) fn pressing(
-    matrix: &dyn Fn(usize, usize) -> f64,
-    rates: &[f64],
-    warm: &[bool],
-) -> Vec<Role> {
-    let count = rates.len();
-    let scale = rates
-        .iter()
-        .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-    let tolerance = 1e-13 * scale;
-    let mut active = Active {
-        matrix,
-        rates,
-        forces: vec![0.0; count],
-        pressed: Vec::new(),
-        factor: Cholesky::empty(),
-    };
-    for index in (0..count).filter(|index| warm[*index]) {
-        // One that depends on the others is no loss to a guess.
-        active.add(index);
-    }
-    let mut dependent = vec![false; count];
-    // The method is finite; the bound only guards against rounding that makes it cycle.
-    for _ in 0..20 * count + 20 {
-        active.relax();
-        let free = |i: &usize| !dependent[*i] && !active.pressed.contains(i);
-        let worst = (0..count)
-            .filter(free)
-            .map(|i| (i, active.rate(i)))
-            .min_by(|one, other| one.1.total_cmp(&other.1));
-        match worst {
-            Some((index, rate)) if rate < -tolerance => {
-                dependent[index] = !active.add(index);
-            }
-            Some(_) | None => break,
-        }
-    }
-    let idle: Vec<bool> = active
-        .pressed
-        .iter()
-        .map(|i| active.forces[*i] <= 0.0)
-        .collect();
-    active.let_go(&idle);
+#[must_use]
+pub fn pressing(matrix: &dyn Fn(usize, usize) -> f64, rates: &[f64], warm: &[bool]) -> Vec<Role> {
+    let mut active = Active::solved(matrix, rates, warm);
+    let closed = CLOSED * scale(rates);
     let role = |index: usize| {
         if active.pressed.contains(&index) {
             Role::Pressed
-        } else if active.rate(index) > CLOSED * scale || active.is_independent(index) {
+        } else if active.rate(index) > closed || active.is_independent(index) {
             Role::Free
         } else {
             Role::Redundant
         }
     };
-    (0..count).map(role).collect()
+    (0..rates.len()).map(role).collect()
+}
+
+/// The forces of the same problem; where they are not unique, some that solve it: the rates that
+/// come of them are unique.
+#[must_use]
+pub fn pushes(matrix: &dyn Fn(usize, usize) -> f64, rates: &[f64], warm: &[bool]) -> Vec<f64> {
+    Active::solved(matrix, rates, warm).forces
+}
+
+fn scale(rates: &[f64]) -> f64 {
+    let sizes = rates.iter().map(|rate| rate.abs());
+    sizes.fold(0.0, f64::max)
 }
 
 /// The contacts taken to press, with the factor of their matrix.
@@ -88,7 +61,47 @@ struct Active<'a> {
     factor: Cholesky<f64>,
 }
 
-impl Active<'_> {
+impl<'a> Active<'a> {
+    /// Adds the worst that would close, until none would.
+    fn solved(matrix: &'a dyn Fn(usize, usize) -> f64, rates: &'a [f64], warm: &[bool]) -> Self {
+        let count = rates.len();
+        let tolerance = 1e-13 * scale(rates);
+        let mut active = Self {
+            matrix,
+            rates,
+            forces: vec![0.0; count],
+            pressed: Vec::new(),
+            factor: Cholesky::empty(),
+        };
+        for index in (0..count).filter(|index| warm[*index]) {
+            // One that depends on the others is no loss to a guess.
+            active.add(index);
+        }
+        let mut dependent = vec![false; count];
+        // The method is finite; the bound only guards against rounding that makes it cycle.
+        for _ in 0..20 * count + 20 {
+            active.relax();
+            let free = |i: &usize| !dependent[*i] && !active.pressed.contains(i);
+            let worst = (0..count)
+                .filter(free)
+                .map(|i| (i, active.rate(i)))
+                .min_by(|one, other| one.1.total_cmp(&other.1));
+            match worst {
+                Some((index, rate)) if rate < -tolerance => {
+                    dependent[index] = !active.add(index);
+                }
+                Some(_) | None => break,
+            }
+        }
+        let idle: Vec<bool> = active
+            .pressed
+            .iter()
+            .map(|i| active.forces[*i] <= 0.0)
+            .collect();
+        active.let_go(&idle);
+        active
+    }
+
     /// Takes it to press; whether it is independent of the others, else it is not taken.
     fn add(&mut self, index: usize) -> bool {
         let (matrix, pressed) = (self.matrix, &self.pressed);

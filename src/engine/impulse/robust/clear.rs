@@ -1,0 +1,75 @@
+//! How long nothing can meet: then steps are nothing but motion.
+
+use super::Robust;
+use crate::engine::impulse::Particle;
+use crate::engine::impulse::phases::Phases;
+
+impl Robust {
+    /// Whether nothing can meet or stop for longer than a step, where speeds never grow.
+    ///
+    /// Sets `clear`: the least time in which any two surfaces could meet at their present speeds,
+    /// or a body slow down to the rest speed.
+    pub(super) fn becomes_clear(
+        &mut self,
+        phases: &Phases,
+        particles: &[Particle],
+        dt: f64,
+    ) -> bool {
+        self.clear = 0.0;
+        if phases.gravity.is_some() || !self.limits.are_absent {
+            return false;
+        }
+        let mut clear = f64::INFINITY;
+        if phases.contact.is_some() {
+            for (place, a) in particles.iter().enumerate() {
+                for b in &particles[place + 1..] {
+                    let gap = (a.position - b.position).norm() - (a.radius + b.radius);
+                    let speed = (a.velocity - b.velocity).norm();
+                    // Under drag of several rates the relative speed may grow for a while.
+                    let speed = if phases.decay.is_some() && a.mass != b.mass {
+                        a.velocity.norm() + b.velocity.norm()
+                    } else {
+                        speed
+                    };
+                    clear = clear.min(gap / speed);
+                    if !(gap > 0.0) {
+                        return false;
+                    }
+                }
+            }
+        }
+        if let Some(cushions) = &phases.cushions {
+            let half = cushions.half_extents();
+            for particle in particles {
+                for axis in 0..3 {
+                    let room = half[axis] - particle.radius - particle.position[axis].abs();
+                    if !(room > 0.0) {
+                        return false;
+                    }
+                    let twice = if particle.velocity[axis] * particle.position[axis] < 0.0 {
+                        room + 2.0 * particle.position[axis].abs()
+                    } else {
+                        room
+                    };
+                    clear = clear.min(twice / particle.velocity[axis].abs());
+                }
+            }
+        }
+        if let Some(rest) = phases.rest {
+            for (particle, rate) in particles.iter().zip(self.flow.rates()) {
+                let speed = particle.velocity.norm();
+                if speed > 0.0 {
+                    if speed < rest.speed {
+                        return false;
+                    }
+                    if *rate > 0.0 {
+                        clear = clear.min((speed / rest.speed).ln() / rate);
+                    }
+                }
+            }
+        }
+        // A hair less, for the rounding of all that; NaN is not clear.
+        self.clear = clear * (1.0 - 1e-9) - dt * 1e-9;
+        self.clear >= dt
+    }
+}

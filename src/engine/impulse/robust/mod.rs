@@ -1,0 +1,315 @@
+//! The top of the ladder: a scheme that survives every scene, and says where it had to give way.
+//!
+//! Between impacts bodies move in closed form under drag, dampers and gravity ([`flow`]); forces
+//! between bodies are constant over a step and keep the energy exactly, whatever its length
+//! ([`mean_force`]), and steps are as short as each effect asks for ([`limits`]). Impacts are
+//! found on the way, and all of one instant are solved together ([`together`]). Surfaces that
+//! stay in touch press on each other with forces that are solved together too. Spheres that
+//! overlap at the start are moved apart once ([`overlap`]).
+
+mod clear;
+mod flow;
+mod limits;
+mod mean_force;
+mod overlap;
+pub(super) mod plan;
+mod press;
+mod search;
+mod stick;
+mod together;
+mod touch;
+mod work;
+
+use super::handling::Taken;
+use super::observer::Observer;
+use super::phases::Phases;
+use super::scheme::Scheme;
+use super::sweep::stop;
+use super::{Particle, books};
+use crate::physics::{SpringDamper, Vector3};
+use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
+use crate::scene::Scene;
+use flow::{Flight, Flow};
+use limits::Limits;
+use search::Next;
+use together::Instant;
+use touch::{Touch, touching};
+use work::Work;
+
+/// Share of a step below which two instants are one.
+const INSTANT: f64 = 1e-13;
+
+/// The scheme `robust` on one scene.
+#[derive(Debug, Clone)]
+pub struct Robust {
+    flow: Flow,
+    limits: Limits,
+    start: Vec<Particle>,
+    before: Vec<Vector3>,
+    ways: Vec<Flight>,
+    travel: Vec<f64>,
+    touches: Vec<Touch>,
+    /// Forces between surfaces in touch. Shape: `[body]`.
+    pushes: Vec<Vector3>,
+    /// Those of walls, summed.
+    wall_push: Vector3,
+    /// For so long nothing can meet, s.
+    clear: f64,
+    /// Whether overlaps could not be resolved.
+    jammed: bool,
+    work: Work,
+    conceded: Conceded,
+}
+
+/// How often what was given up.
+#[derive(Debug, Clone, Copy, Default)]
+struct Conceded {
+    long_steps: u64,
+    turned_back: u64,
+    cut_short: u64,
+    jammed: u64,
+}
+
+impl Scheme for Robust {
+    fn of(scene: &Scene, particles: &[Particle], _step: f64) -> Self {
+        let springs = SpringDamper::all(scene);
+        let phases = Phases::of(scene, crate::engine::spec::DragRule::Exponential);
+        Self {
+            flow: Flow::of(scene, &springs),
+            limits: Limits::of(&phases, particles),
+            start: Vec::new(),
+            before: Vec::new(),
+            ways: Vec::new(),
+            travel: Vec::new(),
+            touches: Vec::new(),
+            pushes: vec![Vector3::zeros(); particles.len()],
+            wall_push: Vector3::zeros(),
+            clear: 0.0,
+            jammed: false,
+            work: Work::default(),
+            conceded: Conceded::default(),
+        }
+    }
+
+    #[inline]
+    fn step(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut impl Observer,
+    ) -> Taken {
+        if self.clear >= dt || self.becomes_clear(phases, particles, dt) {
+            self.clear -= dt;
+            return self.coast(phases, particles, dt, observer);
+        }
+        self.walk(phases, particles, dt, observer)
+    }
+
+    fn forget(&mut self) {
+        self.clear = 0.0;
+        self.jammed = false;
+    }
+
+    fn concessions(&self) -> Vec<Concession> {
+        let Conceded {
+            long_steps,
+            turned_back,
+            cut_short,
+            jammed,
+        } = self.conceded;
+        let counts = [
+            (ConcessionKind::LongStep, long_steps),
+            (ConcessionKind::TurnedBack, turned_back),
+            (ConcessionKind::CutShort, cut_short),
+            (ConcessionKind::Jammed, jammed),
+        ];
+        let made = counts.into_iter().filter(|(_, count)| *count > 0);
+        made.map(|(kind, count)| Concession { kind, count })
+            .collect()
+    }
+}
+
+impl Robust {
+    /// A step in which nothing is met and no force acts.
+    #[inline]
+    fn coast<O: Observer>(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut O,
+    ) -> Taken {
+        let before = if O::BOOKS {
+            particles.to_vec()
+        } else {
+            Vec::new()
+        };
+        self.flow.coast(particles, dt);
+        books::motion(phases, &before, particles, dt, observer);
+        Taken::default()
+    }
+
+    /// A step from event to event.
+    fn walk<O: Observer>(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut O,
+    ) -> Taken {
+        self.work.begin_step();
+        let mut left = dt;
+        self.make_room(phases, particles, observer);
+        while left > 0.0 {
+            let wanted = self.wanted(phases, particles, dt);
+            let mut length = if wanted < left { wanted } else { left };
+            touching(phases, particles, &mut self.touches);
+            self.end_low_bounces(particles, dt, observer);
+            self.start.clear();
+            self.start.extend_from_slice(particles);
+            length = self.press_on(phases, particles, dt, length);
+            let Some(next) = self.first(phases, particles, length, dt) else {
+                self.book_motion(phases, particles, length, observer);
+                left = if length >= left { 0.0 } else { left - length };
+                self.stop_slow(phases, particles, left, observer);
+                continue;
+            };
+            let went = self.go_to(phases, particles, dt, next);
+            self.book_motion(phases, particles, went, observer);
+            left = (left - went).max(0.0);
+            self.meet(phases, particles, dt, next, left, observer);
+        }
+        self.work.taken
+    }
+
+    /// Books a motion from the start of the step, pushes of walls included.
+    fn book_motion<O: Observer>(
+        &self,
+        phases: &Phases,
+        particles: &[Particle],
+        length: f64,
+        observer: &mut O,
+    ) {
+        if O::BOOKS && length > 0.0 {
+            books::motion(phases, &self.start, particles, length, observer);
+            let momentum = self.wall_push * length;
+            let pushed = |sign: f64| Entry {
+                energy: 0.0,
+                momentum: momentum * sign,
+            };
+            // The motion was measured with the pushes in it.
+            observer.book(Account::Integrator, pushed(-1.0));
+            observer.book(Account::Cushions, pushed(1.0));
+        }
+    }
+
+    /// Ends bounces that would not rise above what counts as touching.
+    fn end_low_bounces(&self, particles: &mut [Particle], dt: f64, observer: &mut impl Observer) {
+        let rate = |touch: &Touch| touch.rate(particles).abs();
+        let is_low = |touch: &&Touch| rate(touch) <= touch.slowest_bounce(particles);
+        let low = || self.touches.iter().filter(is_low);
+        if low().any(|touch| rate(touch) > touch.still(particles, dt)) {
+            let low: Vec<Touch> = low().copied().collect();
+            stick::bring_to_rest(particles, &low, |account, entry| {
+                observer.book(account, entry)
+            });
+        }
+    }
+
+    /// The longest step that the effects allow, or that the work allowed does.
+    fn wanted(&mut self, phases: &Phases, particles: &[Particle], dt: f64) -> f64 {
+        if self.limits.are_absent {
+            return f64::INFINITY;
+        }
+        let wanted = self.limits.length(phases, particles);
+        let shortest = self.work.shortest(dt);
+        if wanted >= shortest {
+            return wanted;
+        }
+        self.conceded.long_steps += 1;
+        shortest
+    }
+
+    /// Moves overlapping surfaces apart, unless there is no room for that.
+    fn make_room<O: Observer>(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        observer: &mut O,
+    ) {
+        if self.jammed || (phases.contact.is_none() && phases.cushions.is_none()) {
+            return;
+        }
+        touching(phases, particles, &mut self.touches);
+        if self
+            .touches
+            .iter()
+            .any(|touch| touch.gap < -4.0 * touch.near)
+        {
+            let potential = |particles: &[Particle]| {
+                if O::BOOKS {
+                    books::potential_energy(phases, particles)
+                } else {
+                    0.0
+                }
+            };
+            let before = potential(particles);
+            self.jammed = !overlap::separate(phases, particles);
+            books::push_out(observer, before, potential(particles));
+            self.conceded.jammed += u64::from(self.jammed);
+        }
+    }
+
+    /// Lets the event happen, and all others of the same instant with it.
+    #[allow(clippy::too_many_arguments, reason = "one call, of one step")]
+    fn meet(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        next: Next,
+        left: f64,
+        observer: &mut impl Observer,
+    ) {
+        touching(phases, particles, &mut self.touches);
+        if self.touches.iter().all(|touch| touch.kind != next.kind) {
+            self.touches.extend(Touch::of(next.kind, phases, particles));
+        }
+        if let EventKind::Rest { body } = next.kind {
+            stop(&mut particles[body], body, left, observer);
+        }
+        if self.work.bounces_no_more(particles.len()) {
+            self.conceded.cut_short += 1;
+            for touch in &mut self.touches {
+                touch.restitution = 0.0;
+            }
+        }
+        let mut instant = Instant {
+            particles,
+            touches: &self.touches,
+            rest: phases.rest,
+            dt,
+        };
+        let settled = instant.settle(&mut |note| note.tell(left, observer));
+        self.work.impacts += settled.rounds;
+        self.conceded.cut_short += u64::from(settled.cut_short);
+    }
+
+    /// Stops what became slower than the rest speed by forces that the search does not follow.
+    fn stop_slow(
+        &self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        left: f64,
+        observer: &mut impl Observer,
+    ) {
+        let Some(rest) = phases.rest else { return };
+        for (body, particle) in particles.iter_mut().enumerate() {
+            let speed = particle.velocity.norm();
+            if speed > 0.0 && speed < rest.speed {
+                stop(particle, body, left, observer);
+            }
+        }
+    }
+}

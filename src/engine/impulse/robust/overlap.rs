@@ -1,0 +1,131 @@
+//! Spheres that overlap, moved apart.
+
+use super::super::Particle;
+use super::super::contacts::line_of_action;
+use super::super::phases::Phases;
+use crate::physics::Vector3;
+use crate::scene::overlap::{Overlap, overlaps};
+
+/// Rounds of pushing, after which what still overlaps is left so: a box too small for its balls.
+const ROUNDS_MAX: u32 = 5000;
+/// Spheres are moved apart by this share of their reach more than they must, so that the rounds
+/// end.
+const MORE: f64 = 1e-7;
+/// Over-relaxation of the mean push of each body.
+const RELAXATION: f64 = 1.5;
+/// Share of the last move that is made again: a heap grows outwards in as many rounds as it has
+/// layers, not in their square.
+const MOMENTUM: f64 = 0.9;
+
+/// Moves overlapping spheres apart and back into the box, velocities untouched; whether nothing
+/// overlaps any more.
+///
+/// In rounds: every overlap asks its two spheres to part, in the inverse ratio of the masses and
+/// by a share that both can follow, so that the centre of mass stays; all move at once, so that
+/// no order of bodies decides. Moves go on with momentum, which is lost where overlaps grow.
+/// Source: the projection of position-based dynamics, Jacobi form: Macklin et al. 2014, "Unified
+/// particle physics for real-time applications", section 4; momentum with restarts: `O'Donoghue`
+/// and Candès 2015, "Adaptive restart for accelerated gradient schemes".
+pub(super) fn separate(phases: &Phases, particles: &mut [Particle]) -> bool {
+    let mut moves = vec![Vector3::zeros(); particles.len()];
+    let mut last = f64::INFINITY;
+    for _ in 0..ROUNDS_MAX {
+        let found = overlapping(phases, particles);
+        let size: f64 = found
+            .iter()
+            .map(|overlap| overlap.depth * overlap.depth)
+            .sum();
+        let kept = if size < last { MOMENTUM } else { 0.0 };
+        last = size;
+        for own in &mut moves {
+            *own *= kept;
+        }
+        part(particles, &found, &mut moves);
+        if !found.is_empty() {
+            for (particle, own) in particles.iter_mut().zip(&moves) {
+                particle.position += own;
+            }
+        }
+        if into_box(phases, particles) && found.is_empty() {
+            return true;
+        }
+    }
+    false
+}
+
+fn overlapping(phases: &Phases, particles: &[Particle]) -> Vec<Overlap> {
+    if phases.contact.is_none() {
+        return Vec::new();
+    }
+    let spheres: Vec<_> = particles.iter().map(|p| (p.position, p.radius)).collect();
+    overlaps(&spheres)
+}
+
+/// Adds what the overlaps ask for to the moves.
+fn part(particles: &[Particle], overlaps: &[Overlap], moves: &mut [Vector3]) {
+    let mut counts = vec![0_u32; particles.len()];
+    for overlap in overlaps {
+        counts[overlap.a] += 1;
+        counts[overlap.b] += 1;
+    }
+    for overlap in overlaps {
+        let (a, b) = (&particles[overlap.a], &particles[overlap.b]);
+        let apart = a.position - b.position;
+        let distance = apart.norm();
+        let mut normal = line_of_action(&apart, distance, &a.velocity, &b.velocity);
+        if distance == 0.0 {
+            normal = fanned_out(normal, overlap.a, overlap.b);
+        }
+        let most = counts[overlap.a].max(counts[overlap.b]);
+        let relaxed = (RELAXATION / f64::from(most)).min(1.0);
+        let push = (overlap.depth + MORE * (a.radius + b.radius)) * relaxed;
+        let share = b.mass / (a.mass + b.mass);
+        moves[overlap.a] += normal * (push * share);
+        moves[overlap.b] -= normal * (push * (1.0 - share));
+    }
+}
+
+/// A direction for two of several coincident spheres, so that a heap of them does not stay on one
+/// line: turned about z by the golden angle for each body.
+fn fanned_out(normal: Vector3, a: usize, b: usize) -> Vector3 {
+    if b == a + 1 && a == 0 {
+        return normal;
+    }
+    #[allow(clippy::cast_precision_loss, reason = "a body's number")]
+    let turn = 2.399_963_229_728_653 * (a + b) as f64;
+    let (sin, cos) = turn.sin_cos();
+    #[allow(clippy::cast_precision_loss, reason = "a body's number")]
+    let rise = ((b - a) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+    let turned = Vector3::new(
+        normal.x * cos - normal.z * sin,
+        normal.y + rise,
+        normal.x * sin + normal.z * cos,
+    );
+    let length = turned.norm();
+    if length > 0.0 {
+        turned / length
+    } else {
+        normal
+    }
+}
+
+/// Moves spheres out of the walls; whether none was in one.
+fn into_box(phases: &Phases, particles: &mut [Particle]) -> bool {
+    let Some(cushions) = &phases.cushions else {
+        return true;
+    };
+    let mut inside = true;
+    let half = cushions.half_extents();
+    for particle in particles {
+        for axis in 0..3 {
+            let room = half[axis] - particle.radius;
+            let coordinate = particle.position[axis];
+            if coordinate.abs() > room {
+                // A sphere wider than the box stays in its middle.
+                particle.position[axis] = coordinate.signum() * room.max(0.0);
+                inside &= room < 0.0;
+            }
+        }
+    }
+    inside
+}

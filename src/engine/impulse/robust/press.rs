@@ -1,0 +1,229 @@
+//! Motion over a step, with the pushes of surfaces that stay in touch.
+
+use super::flow::Flow;
+use super::together::coupling;
+use super::touch::Touch;
+use super::{Robust, mean_force};
+use crate::engine::impulse::Particle;
+use crate::engine::impulse::phases::Phases;
+use crate::physics::Vector3;
+use crate::physics::complementarity::pushes;
+
+/// Rounds in which forces between bodies find the end of a step that they lead to.
+const ROUNDS_MAX: u32 = 40;
+/// Rounds that find the pushes of surfaces in touch while other forces depend on places.
+const PUSH_ROUNDS: u32 = 6;
+/// Halvings of a step, before it is given up.
+const HALVINGS: u32 = 10;
+/// Surfaces that press and slide may turn by this angle in a step.
+const TURN: f64 = 0.05;
+
+impl Robust {
+    /// Takes the particles over a step of that length, or a shorter one, with the pushes of what
+    /// stays in touch; gives the length taken.
+    pub(super) fn press_on(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        length: f64,
+    ) -> f64 {
+        let mut length = length;
+        self.release();
+        let resting = self.resting(particles, dt);
+        loop {
+            length = self.travel(phases, particles, length);
+            if resting.is_empty() || !self.press(phases, particles, &resting, length) {
+                return length;
+            }
+            let turn = resting
+                .iter()
+                .filter(|touch| self.is_pressed(touch))
+                .map(|touch| {
+                    let Some(b) = touch.b else { return 0.0 };
+                    let reach = self.start[touch.a].radius + self.start[b].radius;
+                    (self.start[touch.a].velocity - self.start[b].velocity).norm() / reach
+                });
+            let longest = (TURN / turn.fold(0.0, f64::max)).max(self.work.shortest(dt));
+            if length <= longest * 1.001 {
+                return length;
+            }
+            length = longest;
+            self.release();
+            particles.clone_from_slice(&self.start);
+        }
+    }
+
+    /// Takes all pushes away.
+    fn release(&mut self) {
+        self.pushes.fill(Vector3::zeros());
+        self.wall_push = Vector3::zeros();
+    }
+
+    fn is_pressed(&self, touch: &Touch) -> bool {
+        touch
+            .arms()
+            .any(|(body, _)| self.pushes[body] != Vector3::zeros())
+    }
+
+    /// The touches that neither approach nor part.
+    fn resting(&self, particles: &[Particle], dt: f64) -> Vec<Touch> {
+        let rests = |touch: &&Touch| touch.rate(particles).abs() <= touch.still(particles, dt);
+        self.touches.iter().filter(rests).copied().collect()
+    }
+
+    /// Finds the pushes that keep the gaps of resting surfaces from shrinking over the step, and
+    /// takes the step with them; whether any are needed.
+    ///
+    /// Equation: `l >= 0`, change of the gaps `g1 - g0 + B l >= 0`, one of the two zero for each.
+    /// The push of a pair acts along its mean separation, as forces between bodies do, and so
+    /// works `l (g1 - g0)`: nothing, also where surfaces slide and turn.
+    fn press(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        resting: &[Touch],
+        length: f64,
+    ) -> bool {
+        let mut sizes = vec![0.0; resting.len()];
+        for round in 0..PUSH_ROUNDS {
+            let ends: Vec<Touch> = resting
+                .iter()
+                .map(|touch| touch.mean(phases, &self.start, particles))
+                .collect();
+            let changes: Vec<f64> = resting
+                .iter()
+                .zip(&ends)
+                .map(|(t, end)| end.gap - t.gap)
+                .collect();
+            let off = |((touch, change), size): ((&Touch, &f64), &f64)| {
+                let rounding = touch.rounding();
+                *change < -rounding || (*size > 0.0 && *change > rounding)
+            };
+            if !resting.iter().zip(&changes).zip(&sizes).any(off) {
+                return round > 0;
+            }
+            let (flow, start) = (&self.flow, &self.start);
+            let entry = |i: usize, j: usize| pressing(&ends[i], &ends[j], flow, start);
+            let row = |i: usize| {
+                (0..sizes.len())
+                    .map(|j| entry(i, j) * sizes[j])
+                    .sum::<f64>()
+            };
+            let free: Vec<f64> = changes
+                .iter()
+                .enumerate()
+                .map(|(i, g)| g - row(i))
+                .collect();
+            sizes = pushes(&entry, &free, &vec![true; free.len()]);
+            self.release();
+            for (touch, size) in ends.iter().zip(&sizes) {
+                if touch.b.is_none() {
+                    self.wall_push += touch.normal * *size;
+                }
+                for (body, arm) in touch.arms() {
+                    self.pushes[body] += arm * *size;
+                }
+            }
+            particles.clone_from_slice(&self.start);
+            self.try_travel(phases, particles, length);
+        }
+        true
+    }
+
+    /// Takes the particles over a step, a shorter one if the forces find no end; gives its length.
+    fn travel(&mut self, phases: &Phases, particles: &mut [Particle], length: f64) -> f64 {
+        let mut shorter = length;
+        for _ in 0..HALVINGS {
+            if self.try_travel(phases, particles, shorter) {
+                return shorter;
+            }
+            particles.clone_from_slice(&self.start);
+            shorter *= 0.5;
+        }
+        // Nothing that keeps the energy was found: the bodies stay and go back the way they came,
+        // relative to their centre of mass, which keeps energy and momentum.
+        self.conceded.turned_back += 1;
+        self.work.charge_failure();
+        turn_back(particles);
+        length
+    }
+
+    /// One attempt; whether the forces found the end of the step.
+    fn try_travel(&mut self, phases: &Phases, particles: &mut [Particle], h: f64) -> bool {
+        mean_force::set(phases, &self.start, particles, &self.pushes);
+        self.flow.advance(particles, h);
+        self.work.taken.passes += u64::from(phases.forces);
+        self.work.charge_motion();
+        if self.limits.are_absent {
+            return true;
+        }
+        let mut last = f64::INFINITY;
+        for _ in 0..ROUNDS_MAX {
+            self.before.clear();
+            self.before.extend(particles.iter().map(|p| p.position));
+            mean_force::set(phases, &self.start, particles, &self.pushes);
+            for (particle, start) in particles.iter_mut().zip(&self.start) {
+                (particle.position, particle.velocity) = (start.position, start.velocity);
+            }
+            self.flow.advance(particles, h);
+            self.work.taken.passes += 1;
+            self.work.charge_motion();
+            let (mut change, mut travel) = (0.0_f64, 0.0_f64);
+            for ((particle, before), start) in particles.iter().zip(&self.before).zip(&self.start) {
+                change = larger(change, (particle.position - before).norm());
+                travel = larger(travel, (particle.position - start.position).norm());
+            }
+            if !change.is_finite() {
+                return false;
+            }
+            // Down to rounding, where changes stop getting smaller.
+            if change == 0.0
+                || (change <= 1e-13 * travel && change >= 0.5 * last)
+                || change <= 1e-16 * travel
+            {
+                return true;
+            }
+            if change > 1e-3 * travel && change >= last {
+                return false;
+            }
+            last = change;
+        }
+        false
+    }
+}
+
+/// `max` that does not pass over what is not a number.
+fn larger(most: f64, value: f64) -> f64 {
+    if value > most || value.is_nan() {
+        value
+    } else {
+        most
+    }
+}
+
+/// Turns velocities back, relative to that of the centre of mass.
+fn turn_back(particles: &mut [Particle]) {
+    let mass: f64 = particles.iter().map(|p| p.mass).sum();
+    let momentum: Vector3 = particles.iter().map(|p| p.velocity * p.mass).sum();
+    for particle in particles {
+        particle.velocity = momentum * (2.0 / mass) - particle.velocity;
+    }
+}
+
+/// What a unit push at one touch over the step does to the gap of another at its end.
+fn pressing(one: &Touch, other: &Touch, flow: &Flow, particles: &[Particle]) -> f64 {
+    if flow.is_coupled() {
+        let all = one.arms().flat_map(|(body, arm)| {
+            other
+                .arms()
+                .map(move |(theirs, push)| (body, arm, theirs, push))
+        });
+        return all
+            .map(|(body, arm, theirs, push)| {
+                arm.dot(&push) * flow.mobility(body, theirs, particles)
+            })
+            .sum();
+    }
+    coupling(one, other, &|body| flow.mobility(body, body, particles))
+}

@@ -1,0 +1,138 @@
+//! What a step meets first, and the way there.
+
+use super::flow::Flight;
+use super::touch::Touch;
+use super::{INSTANT, Robust};
+use crate::engine::impulse::Particle;
+use crate::engine::impulse::handling::pairs;
+use crate::engine::impulse::meeting::{Along, contact, cushion, slowed};
+use crate::engine::impulse::path::Way;
+use crate::engine::impulse::phases::Phases;
+use crate::recording::{EventKind, Wall};
+
+/// Corrections of the time of an impact under forces that depend on places.
+const REFINEMENTS: u32 = 4;
+
+/// What comes first in a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Next {
+    pub(super) time: f64,
+    pub(super) kind: EventKind,
+}
+
+impl Robust {
+    /// The first event on the way from the start of the step to where the particles are.
+    pub(super) fn first(
+        &mut self,
+        phases: &Phases,
+        particles: &[Particle],
+        length: f64,
+        dt: f64,
+    ) -> Option<Next> {
+        let nothing =
+            phases.contact.is_none() && phases.cushions.is_none() && phases.rest.is_none();
+        if nothing || self.work.meets_no_more(particles.len()) {
+            return None;
+        }
+        self.ways.clear();
+        for (body, (start, end)) in self.start.iter().zip(particles).enumerate() {
+            self.ways.push(self.flow.way(body, start, end, length));
+        }
+        self.travel.clear();
+        self.travel
+            .extend(self.ways.iter().map(|way| way.travel(length)));
+        if !self.travel.iter().all(|travel| travel.is_finite()) {
+            // Numbers beyond those of doubles meet nothing.
+            return None;
+        }
+        let instant = INSTANT * dt;
+        let still = |touch: &Touch| touch.rate(&self.start).abs() <= touch.still(&self.start, dt);
+        let resting: Vec<EventKind> = self
+            .touches
+            .iter()
+            .filter(|touch| still(touch))
+            .map(|touch| touch.kind)
+            .collect();
+        let mut first: Option<Next> = None;
+        let mut offer = |time: Option<f64>, kind: EventKind| {
+            if let Some(time) = time
+                && first.is_none_or(|first| time < first.time)
+            {
+                first = Some(Next { time, kind });
+            }
+        };
+        if phases.contact.is_some() {
+            self.work.taken.pairs += pairs(self.ways.len() as u64);
+            for a in 0..self.ways.len() {
+                for b in a + 1..self.ways.len() {
+                    let kind = EventKind::Contact { a, b };
+                    if resting.is_empty() || !resting.contains(&kind) {
+                        let pair = [a, b].map(|body| self.along(body));
+                        offer(contact(&pair, length, instant), kind);
+                    }
+                }
+            }
+        }
+        if let Some(cushions) = &phases.cushions {
+            let half = cushions.half_extents();
+            for body in 0..self.ways.len() {
+                for wall in Wall::ALL {
+                    let kind = EventKind::Cushion { body, wall };
+                    if resting.is_empty() || !resting.contains(&kind) {
+                        offer(
+                            cushion(&self.along(body), wall, half, length, instant),
+                            kind,
+                        );
+                    }
+                }
+            }
+        }
+        if let Some(rest) = phases.rest {
+            for (body, way) in self.ways.iter().enumerate() {
+                offer(slowed(way, rest.speed, length), EventKind::Rest { body });
+            }
+        }
+        first
+    }
+
+    fn along(&self, body: usize) -> Along<'_, Flight> {
+        Along {
+            path: &self.ways[body],
+            radius: self.start[body].radius,
+            travel: self.travel[body],
+        }
+    }
+
+    /// Takes the particles from the start of the step to an event; gives the time that takes.
+    pub(super) fn go_to(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        dt: f64,
+        next: Next,
+    ) -> f64 {
+        let mut time = next.time;
+        let refinements = if self.limits.are_absent {
+            0
+        } else {
+            REFINEMENTS
+        };
+        for round in 0..=refinements {
+            particles.clone_from_slice(&self.start);
+            if time > 0.0 {
+                time = self.press_on(phases, particles, dt, time);
+            }
+            let touch = Touch::of(next.kind, phases, particles);
+            let Some(touch) = touch.filter(|touch| touch.gap.abs() > 0.1 * touch.near) else {
+                break;
+            };
+            let rate = touch.rate(particles);
+            let better = time - touch.gap / rate;
+            if round == refinements || rate >= 0.0 || !(better > 0.0 && better <= 2.0 * next.time) {
+                break;
+            }
+            time = better;
+        }
+        time
+    }
+}

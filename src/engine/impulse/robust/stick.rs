@@ -1,0 +1,108 @@
+//! Bounces too low to be seen, ended.
+
+use super::super::Particle;
+use super::together::{account, coupling, work};
+use super::touch::Touch;
+use crate::recording::{Account, Entry};
+
+/// Brings to rest the rates of these touches, all together.
+///
+/// Equation: `A l = -u`, l of any sign, by conjugate gradients. That is the projection of the
+/// velocities on those that neither part nor approach: it takes energy and keeps momentum. A may
+/// be singular, where touches depend on each other; the velocities are unique all the same, and
+/// no order of touches decides.
+/// Source: Hestenes and Stiefel 1952.
+pub(super) fn bring_to_rest(
+    particles: &mut [Particle],
+    touches: &[Touch],
+    mut book: impl FnMut(Account, Entry),
+) {
+    let count = touches.len();
+    let inverse = |body: usize| 1.0 / particles[body].mass;
+    let matrix: Vec<f64> = (0..count * count)
+        .map(|at| coupling(&touches[at / count], &touches[at % count], &inverse))
+        .collect();
+    let product =
+        |vector: &[f64]| -> Vec<f64> { matrix.chunks(count).map(|row| dot(row, vector)).collect() };
+    let rates: Vec<f64> = touches.iter().map(|touch| touch.rate(particles)).collect();
+    let mut residual: Vec<f64> = rates.iter().map(|rate| -rate).collect();
+    let mut impulses = vec![0.0; count];
+    let mut direction = residual.clone();
+    let mut size = dot(&residual, &residual);
+    let enough = 1e-30 * size;
+    for _ in 0..2 * count {
+        let pushed = product(&direction);
+        let curvature = dot(&direction, &pushed);
+        if size <= enough || curvature.is_nan() || curvature <= 0.0 {
+            break;
+        }
+        let step = size / curvature;
+        add(&mut impulses, step, &direction);
+        add(&mut residual, -step, &pushed);
+        let smaller = dot(&residual, &residual);
+        let turned = smaller / size;
+        size = smaller;
+        for (own, rest) in direction.iter_mut().zip(&residual) {
+            *own = rest + turned * *own;
+        }
+    }
+    for (touch, impulse) in touches.iter().zip(&impulses) {
+        for (body, arm) in touch.arms() {
+            let change = arm * (impulse / particles[body].mass);
+            particles[body].velocity += change;
+        }
+    }
+    for ((touch, impulse), rate) in touches.iter().zip(impulses).zip(rates) {
+        book(account(touch.kind), work(touch, impulse, rate, particles));
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn add(into: &mut [f64], factor: f64, other: &[f64]) {
+    for (own, other) in into.iter_mut().zip(other) {
+        *own += factor * other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::touch::touching;
+    use super::*;
+    use crate::engine::impulse::particles;
+    use crate::engine::impulse::phases::Phases;
+    use crate::engine::spec::DragRule;
+    use crate::physics::Vector3;
+
+    /// Three spheres in a ring: three touches, all kept closed; the momentum stays, the energy
+    /// falls.
+    #[test]
+    fn slow_touches_come_to_rest_together() {
+        let text = "name='x'\nduration=1\nsample_every=1\n\
+            [[bodies]]\nname='a'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[-1e-7,0,0]\n\
+            [[bodies]]\nname='b'\nmass=2\nradius=1\nposition=[2,0,0]\nvelocity=[2e-7,1e-7,0]\n\
+            [[bodies]]\nname='c'\nmass=3\nradius=1\nposition=[1,0,1.7320508075688772]\nvelocity=[0,0,3e-7]\n\
+            [effects.contact]\nrestitution=0.5\n";
+        let scene = crate::scene::parse(text, "x").unwrap();
+        let phases = Phases::of(&scene, DragRule::Exponential);
+        let mut all = particles(&scene);
+        let mut touches = Vec::new();
+        touching(&phases, &all, &mut touches);
+        assert_eq!(touches.len(), 3);
+        let momentum = |all: &[Particle]| all.iter().map(|p| p.velocity * p.mass).sum::<Vector3>();
+        let energy = |all: &[Particle]| {
+            all.iter()
+                .map(|p| p.mass * p.velocity.norm_squared())
+                .sum::<f64>()
+        };
+        let before = (momentum(&all), energy(&all));
+        bring_to_rest(&mut all, &touches, |_, _| {});
+        for touch in &touches {
+            assert!(touch.rate(&all).abs() < 1e-21, "{}", touch.rate(&all));
+        }
+        assert!((momentum(&all) - before.0).norm() < 1e-21);
+        assert!(energy(&all) < before.1);
+    }
+}

@@ -1,0 +1,304 @@
+//! Impacts at one instant, solved together: no order among them decides.
+
+use super::super::observer::Observer;
+use super::super::{Particle, books};
+use super::touch::Touch;
+use crate::physics::Vector3;
+use crate::physics::complementarity::pushes;
+use crate::recording::{Account, Entry, EventKind};
+use crate::scene::Rest;
+
+/// Reflections after which what still approaches is brought to rest. Without loss they end by
+/// themselves, in fewer than this.
+const REFLECTIONS_MAX: u32 = 2000;
+/// Approach slower than this share of the first is brought to rest, where restitution loses …
+const SPENT: f64 = 1e-9;
+/// … and any after so many reflections: in a dense heap they would go on long, and lose the rest.
+const LOSING_MAX: u32 = 100;
+/// Stops after which a body counts as standing for the rest of the instant.
+const STOPS_MAX: u32 = 20;
+
+/// The bodies and touches of an instant.
+pub(super) struct Instant<'a> {
+    pub(super) particles: &'a mut [Particle],
+    pub(super) touches: &'a [Touch],
+    pub(super) rest: Option<Rest>,
+    /// The step of the scene, s.
+    pub(super) dt: f64,
+}
+
+/// An impact or a stop that happened.
+pub(super) struct Note {
+    kind: EventKind,
+    impulse: f64,
+    entry: Entry,
+}
+
+impl Note {
+    /// Tells an observer, so much time before the end of the step.
+    pub(super) fn tell(&self, left: f64, observer: &mut impl Observer) {
+        observer.note_before_end(self.kind, self.impulse, left);
+        observer.book(account(self.kind), self.entry);
+    }
+}
+
+/// Whom an event is booked with.
+pub(super) fn account(kind: EventKind) -> Account {
+    match kind {
+        EventKind::Contact { .. } => Account::Contacts,
+        EventKind::Cushion { .. } => Account::Cushions,
+        EventKind::Rest { .. } => Account::Rest,
+    }
+}
+
+/// What an impulse at a touch takes and gives, `before` being the rate that it met.
+///
+/// Equation: the work of an impulse is its size times the mean of the rates before and after, and
+/// that adds up over simultaneous impulses.
+pub(super) fn work(touch: &Touch, impulse: f64, before: f64, particles: &[Particle]) -> Entry {
+    let momentum = if touch.b.is_none() {
+        touch.normal * impulse
+    } else {
+        Vector3::zeros()
+    };
+    Entry {
+        energy: 0.5 * impulse * (before + touch.rate(particles)),
+        momentum,
+    }
+}
+
+/// What was not done by the law of impact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Settled {
+    /// Whether endless impacts were cut short.
+    pub(super) cut_short: bool,
+    /// Rounds of reflections.
+    pub(super) rounds: u64,
+}
+
+impl Instant<'_> {
+    /// Lets everything that approaches bounce, until nothing does.
+    ///
+    /// Each round takes the touches that approach, finds the impulses `l >= 0` that would just
+    /// bring them to rest (rates `A l + u >= 0`, one of the two zero for each), and gives
+    /// `(1 + e) l`: the reflection of the velocities at the wall of the cone that they violate.
+    /// With one e, `dE = -(1 - e²)/2 l.A l`, never above zero. Momentum is exact in pairs, and
+    /// nothing depends on the order of the bodies.
+    /// Source: Smith, Kaufman, Vouga, Tamstorf, Grinspun 2012, "Reflections on Simultaneous
+    /// Impact", section 6.
+    pub(super) fn settle(&mut self, note: &mut dyn FnMut(&Note)) -> Settled {
+        let mut settled = Settled::default();
+        let mut stops = vec![0; self.stopped_len()];
+        let mut first = 0.0_f64;
+        for round in 0.. {
+            settled.rounds += 1;
+            let inverse = self.inverse_masses(&stops);
+            let violated: Vec<(Touch, f64)> = self
+                .touches
+                .iter()
+                .map(|touch| (*touch, touch.rate(self.particles)))
+                .filter(|(touch, rate)| *rate < -touch.still(self.particles, self.dt))
+                .collect();
+            if violated.is_empty() {
+                if self.stop_slow(&mut stops, note) {
+                    continue;
+                }
+                break;
+            }
+            let worst = violated
+                .iter()
+                .fold(0.0_f64, |most, (_, rate)| most.max(-rate));
+            first = first.max(worst);
+            let es = violated
+                .iter()
+                .map(|(touch, _)| restitution(touch, self.particles));
+            let (least, most) = es.fold((1.0_f64, 0.0_f64), |(least, most), e| {
+                (least.min(e), most.max(e))
+            });
+            // Where nothing bounces, one solution for all touches is the end of it.
+            let loses = least < 1.0 && (worst <= SPENT * first || round >= LOSING_MAX);
+            let spent = most == 0.0 || loses;
+            if round >= REFLECTIONS_MAX || spent {
+                settled.cut_short |= most > 0.0 && worst > SPENT * first;
+                let all: Vec<(Touch, f64)> = self
+                    .touches
+                    .iter()
+                    .map(|touch| (*touch, touch.rate(self.particles)))
+                    .collect();
+                self.bounce(&all, &inverse, |_, _| 0.0, note);
+                if !self.stop_slow(&mut stops, note) || round >= 2 * REFLECTIONS_MAX {
+                    break;
+                }
+                continue;
+            }
+            self.bounce(&violated, &inverse, restitution, note);
+            if self.rest.is_some() {
+                self.stop_slow(&mut stops, note);
+            }
+        }
+        settled
+    }
+
+    fn stopped_len(&self) -> usize {
+        if self.rest.is_some() {
+            self.particles.len()
+        } else {
+            0
+        }
+    }
+
+    /// 1/m, nothing for a body that stands. Shape: `[body]`, none without stops.
+    fn inverse_masses(&self, stops: &[u32]) -> Vec<f64> {
+        let places = stops.iter().zip(self.particles.iter());
+        places
+            .map(|(stops, particle)| {
+                if *stops < STOPS_MAX {
+                    1.0 / particle.mass
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+
+    /// One reflection of these touches, with their rates.
+    fn bounce(
+        &mut self,
+        violated: &[(Touch, f64)],
+        inverse: &[f64],
+        restitution: impl Fn(&Touch, &[Particle]) -> f64,
+        note: &mut dyn FnMut(&Note),
+    ) {
+        let particles = &*self.particles;
+        let inverse = |body: usize| {
+            inverse
+                .get(body)
+                .copied()
+                .unwrap_or(1.0 / particles[body].mass)
+        };
+        let entry = |i: usize, j: usize| coupling(&violated[i].0, &violated[j].0, &inverse);
+        let rates: Vec<f64> = violated.iter().map(|(_, rate)| *rate).collect();
+        let stopping = match rates.as_slice() {
+            [rate] => vec![(-rate / entry(0, 0)).max(0.0)],
+            _ => pushes(&entry, &rates, &vec![true; rates.len()]),
+        };
+        let es: Vec<f64> = violated
+            .iter()
+            .map(|(touch, _)| restitution(touch, particles))
+            .collect();
+        let impulses = reflected(&stopping, &es, &rates, &entry);
+        let struck: Vec<(&Touch, f64, f64)> = violated
+            .iter()
+            .zip(impulses)
+            .filter(|(_, impulse)| *impulse > 0.0 && impulse.is_finite())
+            .map(|((touch, rate), impulse)| (touch, *rate, impulse))
+            .collect();
+        let changes: Vec<(usize, Vector3)> = struck
+            .iter()
+            .flat_map(|(touch, _, impulse)| {
+                touch.arms().map(move |(body, arm)| (body, arm * *impulse))
+            })
+            .map(|(body, push)| (body, push * inverse(body)))
+            .collect();
+        let stands = |body: usize| inverse(body) == 0.0;
+        let stands: Vec<Vec<bool>> = struck
+            .iter()
+            .map(|(touch, ..)| touch.arms().map(|(body, _)| stands(body)).collect())
+            .collect();
+        for (body, change) in changes {
+            self.particles[body].velocity += change;
+        }
+        for ((touch, rate, impulse), stands) in struck.into_iter().zip(stands) {
+            let mut entry = work(touch, impulse, rate, self.particles);
+            // Nothing for a pair, unless one of them stands.
+            let moved = touch.arms().zip(stands);
+            entry.momentum = moved
+                .filter(|(_, stands)| !stands)
+                .map(|((_, arm), _)| arm * impulse)
+                .sum();
+            note(&Note {
+                kind: touch.kind,
+                impulse,
+                entry,
+            });
+        }
+    }
+
+    /// Stops every touching body that is slower than the rest speed; whether any was.
+    fn stop_slow(&mut self, stops: &mut [u32], note: &mut dyn FnMut(&Note)) -> bool {
+        let Some(rest) = self.rest else { return false };
+        let mut any = false;
+        for touch in self.touches {
+            for (body, _) in touch.arms() {
+                let particle = &mut self.particles[body];
+                let speed = particle.velocity.norm();
+                if speed > 0.0 && speed < rest.speed {
+                    note(&Note {
+                        kind: EventKind::Rest { body },
+                        impulse: particle.mass * speed,
+                        entry: books::rest(particle.mass, &particle.velocity),
+                    });
+                    particle.velocity = Vector3::zeros();
+                    stops[body] += 1;
+                    any = true;
+                }
+            }
+        }
+        any
+    }
+}
+
+/// The restitution of a touch that approaches: nothing where the bounce would not show.
+fn restitution(touch: &Touch, particles: &[Particle]) -> f64 {
+    if touch.restitution < 1.0 && -touch.rate(particles) < touch.slowest_bounce(particles) {
+        0.0
+    } else {
+        touch.restitution
+    }
+}
+
+/// Entry of A: what a unit impulse at one touch does to the rate of the other.
+pub(super) fn coupling(one: &Touch, other: &Touch, inverse: &impl Fn(usize) -> f64) -> f64 {
+    let shared = one.arms().flat_map(|(body, arm)| {
+        let same = other.arms().filter(move |(theirs, _)| *theirs == body);
+        same.map(move |(_, theirs)| arm.dot(&theirs) * inverse(body))
+    });
+    shared.sum()
+}
+
+/// `(1 + e) l`, made to lose exactly `(1 - e²)/2 l.A l` whatever the rounding of l.
+///
+/// Where the touches have several e, theirs are used only if that gains no energy; else the
+/// smallest for all.
+fn reflected(
+    stopping: &[f64],
+    es: &[f64],
+    rates: &[f64],
+    entry: &impl Fn(usize, usize) -> f64,
+) -> Vec<f64> {
+    let quadratic = |l: &[f64]| -> f64 {
+        let row = |i: usize| (0..l.len()).map(|j| entry(i, j) * l[j]).sum::<f64>();
+        (0..l.len())
+            .filter(|i| l[*i] != 0.0)
+            .map(|i| l[i] * row(i))
+            .sum()
+    };
+    let linear = |l: &[f64]| -> f64 { l.iter().zip(rates).map(|(l, u)| l * u).sum() };
+    let size = quadratic(stopping);
+    let scale = if size > 0.0 {
+        -linear(stopping) / size
+    } else {
+        0.0
+    };
+    let least = es.iter().copied().fold(f64::INFINITY, f64::min);
+    let with = |e: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let indexed = stopping.iter().enumerate();
+        indexed.map(|(i, l)| (1.0 + e(i)) * scale * l).collect()
+    };
+    let own = with(&|i| es[i]);
+    if es.iter().all(|e| *e == least) || linear(&own) + 0.5 * quadratic(&own) <= 0.0 {
+        own
+    } else {
+        with(&|_| least)
+    }
+}
