@@ -19,7 +19,8 @@ pub(super) struct Args {
     /// Scene files, or names of cases
     #[arg(required_unless_present = "sizes")]
     scenes: Vec<String>,
-    /// Engines, separated by commas [default: all but exact, which errors are measured against]
+    /// Engines, separated by commas [default: all but exact, which errors are measured against, and
+    /// robust, whose steps are its own]
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     names: Vec<String>,
     #[command(flatten)]
@@ -64,7 +65,8 @@ fn is_reference(spec: &EngineSpec) -> bool {
 fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
     if names.is_empty() {
         let built = engines().into_iter().filter(EngineSpec::is_built);
-        return Ok(built.filter(|spec| !is_reference(spec)).collect());
+        let laddered = built.filter(|spec| !is_reference(spec) && !spec.chooses_its_steps());
+        return Ok(laddered.collect());
     }
     let specs = chosen(names, &[])?;
     match specs.iter().find(|spec| is_reference(spec)) {

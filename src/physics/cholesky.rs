@@ -36,6 +36,10 @@ impl<T: Real> Cholesky<T> {
     /// # Errors
     /// The row depends on the rows before it, and nothing is added: its pivot falls below
     /// `1e-11` of its diagonal, where two thirds of a double's digits are gone.
+    #[allow(
+        clippy::result_unit_err,
+        reason = "there is one thing that can be wrong"
+    )]
     pub fn grow(&mut self, entry: impl Fn(usize) -> T) -> Result<(), ()> {
         let size = self.rows.len();
         let mut own: Vec<T> = Vec::with_capacity(size + 1);

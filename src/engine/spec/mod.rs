@@ -63,6 +63,16 @@ impl EngineSpec {
         }
     }
 
+    /// Whether the step asked for is only the longest: the effects decide how short its own are, so
+    /// that a ladder of steps says little.
+    #[must_use]
+    pub fn chooses_its_steps(&self) -> bool {
+        match self.kind {
+            EngineKind::Impulse(settings) => settings.integrator == Integrator::EnergyMomentum,
+            EngineKind::Exact(_) | EngineKind::Rapier(_) => false,
+        }
+    }
+
     /// The order in the step that the engine states for errors of position, with impacts on the
     /// way or without; none where it states none.
     #[must_use]

@@ -32,7 +32,7 @@ impl Robust {
                         speed
                     };
                     clear = clear.min(gap / speed);
-                    if !(gap > 0.0) {
+                    if gap.is_nan() || gap <= 0.0 {
                         return false;
                     }
                 }
@@ -41,9 +41,9 @@ impl Robust {
         if let Some(cushions) = &phases.cushions {
             let half = cushions.half_extents();
             for particle in particles {
-                for axis in 0..3 {
-                    let room = half[axis] - particle.radius - particle.position[axis].abs();
-                    if !(room > 0.0) {
+                for (axis, half) in half.iter().enumerate() {
+                    let room = half - particle.radius - particle.position[axis].abs();
+                    if room.is_nan() || room <= 0.0 {
                         return false;
                     }
                     let twice = if particle.velocity[axis] * particle.position[axis] < 0.0 {

@@ -215,10 +215,10 @@ impl Cluster {
             // The centre of mass moves as if there were no dampers; the products of matrices
             // keep that to their rounding only, which would add up.
             let mean = |rows: &DMatrix<f64>| self.masses.tr_mul(rows) / self.masses.sum();
-            let (v, a) = (mean(&velocity), mean(&acceleration));
+            let [speed, pull] = [mean(&velocity), mean(&acceleration)];
             let off = [
-                &v * h + &a * (0.5 * h * h) - mean(&moved),
-                &v + &a * h - mean(&left),
+                &speed * h + &pull * (0.5 * h * h) - mean(&moved),
+                &speed + &pull * h - mean(&left),
             ];
             for row in 0..self.bodies.len() {
                 for axis in 0..3 {
@@ -392,7 +392,7 @@ mod tests {
         assert_eq!(decay(f64::INFINITY), [0.0, 0.0, 0.0]);
     }
 
-    /// Two bodies and a damper: the relative velocity decays with kd (1/m_a + 1/m_b), the
+    /// Two bodies and a damper: the relative velocity decays with `kd (1/m_a + 1/m_b)`, the
     /// momentum stays.
     #[test]
     fn a_damper_decays_the_relative_velocity_and_keeps_the_momentum() {

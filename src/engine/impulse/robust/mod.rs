@@ -172,7 +172,7 @@ impl Robust {
             let Some(next) = self.first(phases, particles, length, dt) else {
                 self.book_motion(phases, particles, length, observer);
                 left = if length >= left { 0.0 } else { left - length };
-                self.stop_slow(phases, particles, left, observer);
+                Self::stop_slow(phases, particles, left, observer);
                 continue;
             };
             let went = self.go_to(phases, particles, dt, next);
@@ -212,7 +212,7 @@ impl Robust {
         if low().any(|touch| rate(touch) > touch.still(particles, dt)) {
             let low: Vec<Touch> = low().copied().collect();
             stick::bring_to_rest(particles, &low, |account, entry| {
-                observer.book(account, entry)
+                observer.book(account, entry);
             });
         }
     }
@@ -298,7 +298,6 @@ impl Robust {
 
     /// Stops what became slower than the rest speed by forces that the search does not follow.
     fn stop_slow(
-        &self,
         phases: &Phases,
         particles: &mut [Particle],
         left: f64,

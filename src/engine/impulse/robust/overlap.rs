@@ -117,8 +117,8 @@ fn into_box(phases: &Phases, particles: &mut [Particle]) -> bool {
     let mut inside = true;
     let half = cushions.half_extents();
     for particle in particles {
-        for axis in 0..3 {
-            let room = half[axis] - particle.radius;
+        for (axis, half) in half.iter().enumerate() {
+            let room = half - particle.radius;
             let coordinate = particle.position[axis];
             if coordinate.abs() > room {
                 // A sphere wider than the box stays in its middle.
