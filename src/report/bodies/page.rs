@@ -46,7 +46,8 @@ struct Table {
 }
 
 const STEPS_NOTE: &str = "For an engine without steps: what a stretch as long as a step costs it. \
-    The other rungs of the ladder stand in this table and not in the picture.";
+    The other rungs of the ladder stand in this table and not in the picture, and of another \
+    build `rapier` alone is drawn.";
 const RATIOS_NOTE: &str = "Medians of the ratios of prices taken in the same round, with 95 % \
     bootstrap intervals; where an interval holds 1, the two are not ranked. Another build is \
     another program, run at another time: it is held against its own lecture, in its own rounds, \

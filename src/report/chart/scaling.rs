@@ -5,7 +5,7 @@ use super::ChartError;
 use super::axis::{Axis, fitting};
 use super::canvas::{Align, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
-use super::polyline::Frame;
+use super::polyline::{Frame, dotted};
 use super::text::width;
 use super::theme::{CANVAS, INK, MARGIN, Pen, color};
 use super::work::{
@@ -69,13 +69,15 @@ pub fn scaling(figure: &ScalingFigure) -> Result<Vec<u8>, ChartError> {
             canvas.line(&stroke, Pen::solid(color(color_of), 6.0))?;
         }
         let mut taken = taken(figure, &plot);
+        let lines = lines(figure, &plot);
         for crossing in &figure.crossings {
             let Some(at) = plot.place(crossing.at) else {
                 continue;
             };
             canvas.ring(at, RING, Pen::solid(color(crossing.color), 3.0))?;
             let wide = width(&crossing.label, NOTE_PX)?;
-            if let Some(room) = free(at, wide, &plot.frame, &taken) {
+            let clear = free(at, wide, &plot.frame, &[&taken[..], &lines].concat());
+            if let Some(room) = clear.or_else(|| free(at, wide, &plot.frame, &taken)) {
                 let look = Lettering {
                     px: NOTE_PX,
                     color: color(crossing.color),
@@ -139,6 +141,15 @@ fn taken(figure: &ScalingFigure, plot: &Plot) -> Vec<Frame> {
     let crossings = figure.crossings.iter();
     let rings = crossings.filter_map(|crossing| Some(around(plot.place(crossing.at)?, RING)));
     points.chain(rings).collect()
+}
+
+/// What a label covers only where it finds no other place: the lines of the curves.
+fn lines(figure: &ScalingFigure, plot: &Plot) -> Vec<Frame> {
+    let beads = figure.work.curves.iter().flat_map(|curve| {
+        let line: Vec<_> = places(curve, plot).map(|(at, _)| at).collect();
+        dotted(&line, 0.0, POINT)
+    });
+    beads.map(|at| around(at, 0.5 * POINT)).collect()
 }
 
 #[cfg(test)]
