@@ -86,7 +86,10 @@ impl BodiesArgs {
         study.points.extend(others);
         write_bodies(&folder, &study)?;
         if study.machine.is_busy() {
-            warn("the machine was not alone with this; ratios hold better than prices");
+            warn(
+                "something else ran when the study began, or had just ended; ratios hold better \
+                 than prices",
+            );
         }
         for refusal in &study.refusals {
             warn(format_args!("{}: {}", refusal.engine, refusal.reason));

@@ -334,7 +334,7 @@ fn cost_against_bodies_leaves_every_point_and_takes_in_other_builds() {
     assert_eq!(
         rows[0].join(","),
         "build,engine,bodies,dt,filling,walls,seed,step_us,step_min_us,cost_ms_per_sim_s,steps,\
-         force_evaluations,pair_tests,outcome,machine"
+         force_evaluations,pair_tests,ratio,ratio_low,ratio_high,outcome,machine"
     );
     assert_eq!(rows.len(), 1 + 6);
     assert_eq!(rows[1][1..6], ["lecture", "4", "0.01", "0.1", "closed"]);
@@ -342,7 +342,8 @@ fn cost_against_bodies_leaves_every_point_and_takes_in_other_builds() {
         .iter()
         .find(|row| row[1..3] == ["lecture", "30"])
         .unwrap();
-    assert_eq!(thirty[7..14], ["", "", "", "", "", "", "BudgetSpent"]);
+    assert_eq!(thirty[7..16], ["", "", "", "", "", "", "", "", ""]);
+    assert_eq!(thirty[16], "BudgetSpent");
     assert!(rows[1][7].parse::<f64>().unwrap() > 0.0);
     let page = fs::read_to_string(own.join("README.md")).unwrap();
     assert!(page.contains("What is fixed, and what each body and pair adds"));

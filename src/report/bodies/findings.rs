@@ -1,10 +1,12 @@
 //! What was found, in sentences: who overtakes whom, and how they stand at the end.
 
+use std::cmp::Ordering;
+
 use super::tables::{label, ratio};
 use crate::engine::{EngineKind, engine};
 use crate::report::engineering;
 use crate::report::format::about;
-use crate::study::bodies::{BASE, BodiesStudy, Crossover, Series};
+use crate::study::bodies::{BASE, BodiesPoint, BodiesStudy, Crossover, Series};
 
 /// The crossovers with the base, the ratios at the largest size, and how far the builds can be
 /// compared.
@@ -20,6 +22,11 @@ pub fn bodies_findings(study: &BodiesStudy) -> Vec<String> {
         others
             .iter()
             .filter_map(|series| at_the_end(study, *series)),
+    );
+    found.extend(
+        others
+            .iter()
+            .filter_map(|series| other_build(study, *series)),
     );
     found.extend(unpaid(study));
     found.extend(controls(study));
@@ -46,7 +53,7 @@ fn overtaking(study: &BodiesStudy, series: Series) -> Vec<String> {
         return sentences.collect();
     }
     let standings = study.standings(series);
-    let decided: Vec<_> = standings.iter().filter(|at| at.is_decided).collect();
+    let decided: Vec<_> = standings.iter().filter(|at| at.is_decided()).collect();
     let sentence = match (decided.first(), decided.last()) {
         (Some(first), Some(last)) => {
             let word = if first.ratio < 1.0 { "less" } else { "more" };
@@ -81,25 +88,45 @@ fn crossing(name: &str, crossover: &Crossover) -> String {
 fn at_the_end(study: &BodiesStudy, series: Series) -> Option<String> {
     let standings = study.standings(series);
     let last = standings.last()?;
-    let name = label(study, series);
-    let bodies = last.bodies;
-    let how = match (last.is_decided, last.paired) {
-        (_, None) if series.build == study.build => {
-            format!(
-                "{name} costs {} of {BASE}; too few rounds to rank them",
-                ratio(last)
-            )
+    let (name, told) = (label(study, series), ratio(last));
+    let how = match (last.interval, last.is_decided()) {
+        (None, _) => format!("{name} costs {told} of {BASE}; too few rounds to rank them"),
+        (_, false) => format!("{name} and {BASE} cannot be ranked: {told}"),
+        (_, true) if last.ratio < 1.0 => format!("{name} costs {told} of {BASE}"),
+        (_, true) => format!("{name} costs {told} times as much as {BASE}"),
+    };
+    Some(format!("At {} bodies {how}.", last.bodies))
+}
+
+/// Where an engine of another build is cheaper or dearer than in this one, each held against the
+/// lecture of its own run.
+fn other_build(study: &BodiesStudy, series: Series) -> Option<String> {
+    if series.build == study.build {
+        return None;
+    }
+    let own = study.standings(study.own(series.engine));
+    let others = study.standings(series);
+    let at = |wanted: Ordering| {
+        let same = own.iter().flat_map(|own| {
+            let others = others.iter().filter(|other| other.bodies == own.bodies);
+            others.filter(move |other| other.against(own) == wanted)
+        });
+        let sizes: Vec<_> = same.map(|at| at.bodies.to_string()).collect();
+        if sizes.is_empty() {
+            "none".to_owned()
+        } else {
+            sizes.join(", ")
         }
-        (false, _) => format!("{name} and {BASE} cannot be ranked: {}", ratio(last)),
-        (true, _) if last.ratio < 1.0 => format!("{name} costs {} of {BASE}", ratio(last)),
-        (true, _) => format!("{name} costs {} times as much as {BASE}", ratio(last)),
     };
-    let apart = if series.build == study.build {
-        ""
-    } else {
-        " (separate runs, no interval)"
-    };
-    Some(format!("At {bodies} bodies {how}{apart}."))
+    Some(format!(
+        "Held against the {BASE} of its own run, {} is cheaper than in the build {} at these \
+         numbers of bodies: {}; dearer at: {}; the intervals overlap at: {}.",
+        label(study, series),
+        study.build,
+        at(Ordering::Less),
+        at(Ordering::Greater),
+        at(Ordering::Equal)
+    ))
 }
 
 /// Which engines were not run at which sizes.
@@ -120,18 +147,22 @@ fn unpaid(study: &BodiesStudy) -> Option<String> {
     })
 }
 
-/// How much the same hand-written engine differs between builds: what Rapier's features cannot
-/// have done.
+/// How much the same hand-written engine differs between builds, which Rapier's features cannot
+/// have done: what the machine did in between.
 fn controls(study: &BodiesStudy) -> Vec<String> {
     let all = study.series().into_iter();
     let same = all.filter(|series| series.engine == BASE && series.build != study.build);
     let control = |series: Series| {
-        let ratios: Vec<_> = study.standings(series).iter().map(|at| at.ratio).collect();
+        let ratio = |point: &BodiesPoint| {
+            let own = study.at(study.own(BASE), point.bodies)?;
+            Some(point.cost_ms_per_sim_s? / own.cost_ms_per_sim_s?)
+        };
+        let ratios: Vec<_> = study.of(series).into_iter().filter_map(ratio).collect();
         let low = ratios.iter().copied().reduce(f64::min)?;
         let high = ratios.iter().copied().reduce(f64::max)?;
         Some(format!(
-            "{BASE} itself costs {} to {} times as much in the build {} as in {}: the builds were \
-             separate runs, and smaller differences between them mean nothing.",
+            "{BASE} itself costs {} to {} times as much in the build {} as in {}: they are separate \
+             runs, so that times of different builds are told apart only by more than that.",
             engineering(low),
             engineering(high),
             series.build,
@@ -176,14 +207,14 @@ mod tests {
         assert_eq!(found.len(), 5, "{found:?}");
     }
 
-    /// The lecture in another build tells how far separate runs can be compared.
+    /// The lecture in another build tells how far separate runs can be compared; where an engine
+    /// is cheaper there is told by ratios within each run.
     #[test]
-    fn another_build_has_its_control() {
-        let mut own = study(&[(BASE, 2.0, 1e-3)]);
-        let mut other = study(&[(BASE, 2.0, 1.5e-3), ("rapier", 2.0, 2e-3)]);
+    fn another_build_has_its_control_and_its_gain() {
+        let mut own = study(&[(BASE, 2.0, 1e-3), ("rapier", 2.0, 2e-3)]);
+        let mut other = study(&[(BASE, 2.0, 1.5e-3), ("rapier", 2.0, 1.5e-3)]);
         for point in &mut other.points {
             "parallel".clone_into(&mut point.build);
-            point.rounds.clear();
         }
         own.points.extend(other.points);
         let found = bodies_findings(&own);
@@ -191,8 +222,10 @@ mod tests {
         assert!(has(
             "lecture itself costs 1.50 to 1.50 times as much in the build parallel"
         ));
+        assert!(has("rapier (parallel) and lecture cannot be ranked: 1.00"));
         assert!(has(
-            "rapier (parallel) costs 2.00 times as much as lecture (separate runs"
+            "cheaper than in the build default at these numbers of bodies: 4, 10, 30, 100"
         ));
+        assert!(has("dearer at: none"), "{found:?}");
     }
 }

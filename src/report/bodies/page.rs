@@ -46,10 +46,12 @@ struct Table {
 }
 
 const STEPS_NOTE: &str = "For an engine without steps: what a stretch as long as a step costs it. \
-    The other rungs of the ladder stand in this table and not in the picture.";
+    The other rungs of the ladder stand in this table and not in the picture, and of another \
+    build `rapier` alone is drawn.";
 const RATIOS_NOTE: &str = "Medians of the ratios of prices taken in the same round, with 95 % \
-    bootstrap intervals; where an interval holds 1, the two are not ranked. Other builds are other \
-    programs, run at another time: their ratios are of medians and have no interval.";
+    bootstrap intervals; where an interval holds 1, the two are not ranked. Another build is \
+    another program, run at another time: it is held against its own lecture, in its own rounds, \
+    and no ratio pairs two builds.";
 const PARTS_NOTE: &str = "Least squares on relative errors, so that 4 bodies count as much as the \
     most; no part is negative. What the fit leaves is the share by which it misses the costs: a \
     step is not quite such a sum, for memory is slower than caches, and a tree is deeper the more \

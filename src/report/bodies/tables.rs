@@ -3,7 +3,7 @@
 use crate::report::engineering;
 use crate::report::format::aligned;
 use crate::report::overhead::overhead_cells;
-use crate::study::bodies::{BodiesPoint, BodiesStudy, Series, Standing};
+use crate::study::bodies::{BASE, BodiesPoint, BodiesStudy, Series, Standing};
 
 /// A row: who, and a cell for each column.
 pub(super) type Row = Vec<String>;
@@ -38,10 +38,10 @@ pub(super) fn step_rows(study: &BodiesStudy) -> Vec<Row> {
     rows(study, |_, point| Some(engineering(point.per_step_us(dt)?)))
 }
 
-/// Costs over those of the base, with their intervals.
+/// Costs over those of the base of the same build, with their intervals.
 pub(super) fn ratio_rows(study: &BodiesStudy) -> Vec<Row> {
     rows(study, |series, point| {
-        if series == study.base() {
+        if series.engine == BASE {
             return Some("1".to_owned());
         }
         let standings = study.standings(series);
@@ -53,11 +53,8 @@ pub(super) fn ratio_rows(study: &BodiesStudy) -> Vec<Row> {
 /// A ratio with its interval, in a cell or a sentence.
 pub(super) fn ratio(standing: &Standing) -> String {
     let ratio = engineering(standing.ratio);
-    match standing.paired {
-        Some(paired) => {
-            let ends = [paired.low, paired.high].map(engineering).join(" to ");
-            format!("{ratio} ({ends})")
-        }
+    match standing.interval {
+        Some(ends) => format!("{ratio} ({})", ends.map(engineering).join(" to ")),
         None => ratio,
     }
 }

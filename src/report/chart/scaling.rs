@@ -5,7 +5,7 @@ use super::ChartError;
 use super::axis::{Axis, fitting};
 use super::canvas::{Align, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
-use super::polyline::Frame;
+use super::polyline::{Frame, dotted};
 use super::room::{NEAR, Room, around};
 use super::text::width;
 use super::theme::{CANVAS, INK, MARGIN, Pen, color};
@@ -132,12 +132,17 @@ fn strokes(figure: &ScalingFigure, plot: &Plot) -> Vec<([[f64; 2]; 2], usize)> {
     figure.spent.iter().enumerate().filter_map(stroke).collect()
 }
 
-/// What no label may cover: points and rings.
+/// What labels must not cover, points and rings, and should not, the lines of the curves.
 fn room(figure: &ScalingFigure, plot: &Plot) -> Room {
     let mut room = Room::new(plot.frame);
     for curve in &figure.work.curves {
-        for (at, _) in plot.places(curve) {
-            room.take(around(at, point_radius(curve)));
+        let line: Vec<_> = plot.places(curve).iter().map(|(at, _)| *at).collect();
+        let radius = point_radius(curve);
+        for at in dotted(&line, 0.0, radius) {
+            room.spare(around(at, 0.5 * radius));
+        }
+        for at in line {
+            room.take(around(at, radius));
         }
     }
     for crossing in &figure.crossings {

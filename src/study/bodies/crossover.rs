@@ -1,20 +1,38 @@
 //! Where one engine overtakes another.
 
-use super::{BodiesStudy, Series};
-use crate::study::Ratio;
+use std::cmp::Ordering;
 
-/// How a series stands to the base at a number of bodies.
+use super::{BASE, BodiesStudy, Series};
+
+/// How a series stands to the base of its own build, which ran in the same rounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
     /// Number of bodies.
     pub bodies: usize,
-    /// Cost of the series over that of the base.
+    /// Cost over that of the base.
     pub ratio: f64,
-    /// The same with its interval, where both were measured in the same rounds.
-    pub paired: Option<Ratio>,
-    /// Whether it can be told which is dearer. Across builds, where there are no pairs, the
-    /// medians decide.
-    pub is_decided: bool,
+    /// Its 95 % interval; none with too few rounds.
+    pub interval: Option<[f64; 2]>,
+}
+
+impl Standing {
+    /// Whether it can be told which of the two is dearer.
+    #[must_use]
+    pub fn is_decided(&self) -> bool {
+        let apart = |[low, high]: [f64; 2]| low > 1.0 || high < 1.0;
+        self.interval.is_some_and(apart)
+    }
+
+    /// How this one stands to another at the same number of bodies, each held against the base of
+    /// its own build; equal where their intervals overlap.
+    #[must_use]
+    pub fn against(&self, other: &Self) -> Ordering {
+        match (self.interval, other.interval) {
+            (Some([_, high]), Some([low, _])) if high < low => Ordering::Less,
+            (Some([low, _]), Some([_, high])) if low > high => Ordering::Greater,
+            _ => Ordering::Equal,
+        }
+    }
 }
 
 /// A number of bodies at which a series costs as much as the base.
@@ -32,23 +50,16 @@ pub struct Crossover {
 }
 
 impl BodiesStudy {
-    /// How a series stands to the base, by size, wherever both have a cost.
+    /// How a series stands to the base of its build, by size.
     #[must_use]
     pub fn standings(&self, series: Series) -> Vec<Standing> {
         let standing = |point: &super::BodiesPoint| {
-            let base = self.at(self.base(), point.bodies)?;
-            let ratio = point.cost_ms_per_sim_s? / base.cost_ms_per_sim_s?;
-            let paired = self.ratio(series, point.bodies);
-            let is_decided = if series.build == self.build {
-                paired.is_some_and(|ratio| ratio.is_decided())
-            } else {
-                true
-            };
             Some(Standing {
                 bodies: point.bodies,
-                ratio: paired.map_or(ratio, |paired| paired.median),
-                paired,
-                is_decided,
+                ratio: point.ratio?,
+                interval: point
+                    .ratio_low
+                    .and_then(|low| Some([low, point.ratio_high?])),
             })
         };
         self.of(series).into_iter().filter_map(standing).collect()
@@ -58,7 +69,7 @@ impl BodiesStudy {
     #[must_use]
     pub fn crossovers(&self, series: Series) -> Vec<Crossover> {
         let standings = self.standings(series).into_iter();
-        let decided: Vec<_> = standings.filter(|standing| standing.is_decided).collect();
+        let decided: Vec<_> = standings.filter(Standing::is_decided).collect();
         let pairs = decided.windows(2);
         let crossing = |pair: &[Standing]| {
             let [low, high] = [pair[0], pair[1]];
@@ -67,8 +78,11 @@ impl BodiesStudy {
             }
             let share = low.ratio.ln() / (low.ratio / high.ratio).ln();
             let base = |bodies| {
-                let point = self.at(self.base(), bodies)?;
-                point.per_step_us(self.options.dt)
+                let base = Series {
+                    engine: BASE,
+                    ..series
+                };
+                self.at(base, bodies)?.per_step_us(self.options.dt)
             };
             Some(Crossover {
                 bodies: between(share, count(low.bodies), count(high.bodies)),
@@ -93,8 +107,8 @@ fn between(share: f64, low: f64, high: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::BASE;
     use super::super::testing::{SIZES, study};
+    use super::*;
 
     /// n²/1000 against n: they meet at 1000, on any straight line of log-log; between 300 and
     /// 3000, for at 1000 their interval holds 1.
@@ -117,38 +131,44 @@ mod tests {
         assert!(crossover.is_cheaper_above);
         let standings = study.standings(rapier);
         assert_eq!(standings.len(), SIZES.len());
-        assert!(!standings[5].is_decided, "{:?}", standings[5]);
-        let last = standings[7].paired.unwrap();
-        assert!(last.low <= 0.1 && 0.1 <= last.high && last.is_decided());
+        assert!(!standings[5].is_decided(), "{:?}", standings[5]);
+        let [low, high] = standings[7].interval.unwrap();
+        assert!(low <= 0.1 && 0.1 <= high && standings[7].is_decided());
     }
 
     #[test]
     fn who_is_always_cheaper_is_never_overtaken() {
         let study = study(&[(BASE, 2.0, 1e-3), ("rapier", 2.0, 1e-2)]);
         assert_eq!(study.crossovers(study.series()[1]), []);
-        assert_eq!(study.crossovers(study.base()), []);
+        assert_eq!(study.crossovers(study.own(BASE)), []);
     }
 
-    /// Across builds there are no rounds to pair: the medians decide, without an interval.
+    /// On a machine half as fast, another build is held against the lecture of its own run: the
+    /// crossing stays where it is.
     #[test]
-    fn a_point_of_another_build_has_a_ratio_and_no_interval() {
-        let mut study = study(&[(BASE, 2.0, 1e-3), ("rapier", 1.0, 2.0)]);
-        for point in &mut study.points {
-            if point.engine == "rapier" {
-                "parallel".clone_into(&mut point.build);
-                point.rounds.clear();
-            }
+    fn each_build_is_held_against_its_own_lecture() {
+        let mut own = study(&[(BASE, 2.0, 1e-3), ("rapier", 1.0, 1.0)]);
+        let mut other = study(&[(BASE, 2.0, 2e-3), ("rapier", 1.0, 2.0)]);
+        for point in &mut other.points {
+            "parallel".clone_into(&mut point.build);
         }
-        let series = study.series()[1];
-        assert_eq!(series.build, "parallel");
-        assert!(study.standings(series).iter().all(|at| at.paired.is_none()));
-        let [crossover] = study.crossovers(series)[..] else {
-            panic!("one crossover");
+        own.points.extend(other.points);
+        let at = [1, 3].map(|place| own.crossovers(own.series()[place])[0]);
+        assert!((at[0].bodies / at[1].bodies - 1.0).abs() < 1e-9, "{at:?}");
+        assert!((at[1].step_us / at[0].step_us - 2.0).abs() < 1e-9, "{at:?}");
+        let [one, same] = [1, 3].map(|place| own.standings(own.series()[place])[7]);
+        assert_eq!(one.against(&same), Ordering::Equal);
+        let cheaper = Standing {
+            ratio: 0.5 * one.ratio,
+            interval: one.interval.map(|ends| ends.map(|end| 0.5 * end)),
+            ..one
         };
-        assert!(
-            (crossover.bodies / 2000.0 - 1.0).abs() < 0.05,
-            "{crossover:?}"
-        );
-        assert_eq!(crossover.between, [1000, 3000]);
+        assert_eq!(cheaper.against(&one), Ordering::Less);
+        assert_eq!(one.against(&cheaper), Ordering::Greater);
+        let unsure = Standing {
+            interval: None,
+            ..cheaper
+        };
+        assert_eq!(unsure.against(&one), Ordering::Equal);
     }
 }

@@ -1,15 +1,15 @@
 //! The measurement: a gas of each size, every engine on it.
 
 use super::stretch::{LEAD, STEPS_MIN, expected, steps};
-use super::{BodiesOptions, BodiesPoint, BodiesStudy, Walls};
+use super::{BASE, BodiesOptions, BodiesPoint, BodiesStudy, Walls};
 use crate::engine::{EngineSpec, build, engine, prepare};
 use crate::error::{Error, Result};
 use crate::recording::{Outcome, Work, initial_states};
 use crate::scene::Scene;
 use crate::scene::generate::Gas;
-use crate::study::Refusal;
 use crate::study::cost::Machine;
-use crate::study::stopwatch::{Job, Price, prices};
+use crate::study::stopwatch::{Job, Price, paired, prices};
+use crate::study::{Refusal, median, paired_ratio};
 
 /// Simulated time in which the lattice melts, s: two impacts a sphere, about, at a filling of 0.1.
 const MELTING: f64 = 2.0;
@@ -147,43 +147,53 @@ fn measure(
     let jobs: Vec<Job> = jobs.collect();
     let told = |done, total| watch(bodies, done, total);
     let mut found = prices(&jobs, options.timing, &told)?.into_iter();
-    for run in &runs {
+    let priced = runs.iter().map(|run| {
         let price = run.outcome.is_finished().then(|| found.next()).flatten();
-        study
-            .points
-            .push(point(study, run.spec, bodies, run.outcome, price));
+        (run, price)
+    });
+    let priced: Vec<(&Run, Option<Price>)> = priced.collect();
+    let base = priced.iter().find(|(run, _)| run.spec.name == BASE);
+    let base = base.and_then(|(_, price)| price.as_ref());
+    for (run, price) in &priced {
+        let point = point(study, run, bodies, price.as_ref(), base);
+        study.points.push(point);
     }
     Ok(())
 }
 
 fn point(
     study: &BodiesStudy,
-    spec: &EngineSpec,
+    run: &Run,
     bodies: usize,
-    outcome: Outcome,
-    price: Option<Price>,
+    price: Option<&Price>,
+    base: Option<&Price>,
 ) -> BodiesPoint {
     let options = &study.options;
-    let step = spec.takes_steps().then_some(options.dt);
+    let step = run.spec.takes_steps().then_some(options.dt);
     let step_us = |cost: f64| Some(1e3 * step? * cost);
-    let cost = price.as_ref();
+    let rounds = price
+        .zip(base)
+        .map(|(own, base)| [&own.rounds, &base.rounds]);
+    let ratio = rounds.and_then(|[own, base]| paired_ratio(own, base, options.timing.seed));
     BodiesPoint {
         build: study.build.clone(),
-        engine: spec.name.clone(),
+        engine: run.spec.name.clone(),
         bodies,
         dt: step,
         filling: options.filling,
         walls: options.walls,
         seed: options.timing.seed,
-        step_us: cost.and_then(|price| step_us(price.median)),
-        step_min_us: cost.and_then(|price| step_us(price.min)),
-        cost_ms_per_sim_s: cost.map(|price| price.median),
-        steps: cost.map(|price| price.work.steps),
-        force_evaluations: cost.map(|price| price.work.force_evaluations),
-        pair_tests: cost.map(|price| price.work.pair_tests),
-        outcome: outcome.word().to_owned(),
+        step_us: price.and_then(|price| step_us(price.median)),
+        step_min_us: price.and_then(|price| step_us(price.min)),
+        cost_ms_per_sim_s: price.map(|price| price.median),
+        steps: price.map(|price| price.work.steps),
+        force_evaluations: price.map(|price| price.work.force_evaluations),
+        pair_tests: price.map(|price| price.work.pair_tests),
+        ratio: rounds.map(|[own, base]| median(&paired(own, base))),
+        ratio_low: ratio.map(|ratio| ratio.low),
+        ratio_high: ratio.map(|ratio| ratio.high),
+        outcome: run.outcome.word().to_owned(),
         machine: study.machine.describe(),
-        rounds: price.map_or_else(Vec::new, |price| price.rounds),
     }
 }
 
@@ -219,7 +229,6 @@ fn cut(gas: &Scene, steps: usize, dt: f64) -> Scene {
 
 #[cfg(test)]
 mod tests {
-    use super::super::BASE;
     use super::*;
     use crate::physics::Vector3;
     use crate::study::Timing;
@@ -248,7 +257,7 @@ mod tests {
     fn every_engine_has_a_point_at_every_size_and_counts_its_work() {
         let study = study(&[BASE, "exact-fast"], &options(&[10, 30], 4650));
         assert_eq!(study.points.len(), 4);
-        let lecture = study.of(study.base());
+        let lecture = study.of(study.own(BASE));
         let counted = lecture.iter().map(|point| (point.steps, point.pair_tests));
         let ten = (Some(82), Some(82 * 45));
         let thirty = (Some(8), Some(8 * 435));
@@ -256,14 +265,16 @@ mod tests {
         assert!(lecture.iter().all(|point| point.step_us > Some(0.0)));
         let exact = study.at(study.series()[1], 30).unwrap();
         assert_eq!((exact.dt, exact.step_us), (None, None));
-        assert!(exact.cost_ms_per_sim_s > Some(0.0));
+        assert!(exact.cost_ms_per_sim_s > Some(0.0) && exact.ratio > Some(0.0));
+        assert_eq!(lecture[1].ratio, Some(1.0));
+        assert_eq!(exact.ratio_low, None, "one round has no interval");
     }
 
     /// A step of 30 bodies takes 465 units; five steps cannot be paid with 2000.
     #[test]
     fn what_is_over_its_budget_is_marked_and_not_missing() {
         let study = study(&[BASE], &options(&[10, 30], 2000));
-        let lecture = study.of(study.base());
+        let lecture = study.of(study.own(BASE));
         assert!(!lecture[0].is_over_budget() && lecture[0].step_us.is_some());
         assert!(lecture[1].is_over_budget());
         assert_eq!((lecture[1].step_us, lecture[1].steps), (None, None));

@@ -14,10 +14,10 @@ pub use measure::bodies_cost;
 use serde::{Deserialize, Serialize};
 
 use super::cost::Machine;
-use super::{Overhead, Ratio, Refusal, Timing, paired_ratio};
+use super::{Overhead, Refusal, Timing};
 use crate::recording::Outcome;
 
-/// The engine that the others are held against, where it takes part.
+/// The engine that the others of the same build are held against, where it takes part.
 pub const BASE: &str = "lecture";
 
 /// Whether there are walls while the clock runs.
@@ -76,13 +76,17 @@ pub struct BodiesPoint {
     pub force_evaluations: Option<u64>,
     /// Pairs looked at in them, where the engine counts them.
     pub pair_tests: Option<u64>,
+    /// Cost over that of the lecture's solver, the median of the ratios within each round; blank
+    /// where that did not run.
+    pub ratio: Option<f64>,
+    /// Lower end of its 95 % interval; blank with too few rounds.
+    pub ratio_low: Option<f64>,
+    /// Upper end of it.
+    pub ratio_high: Option<f64>,
     /// How the run ended; `BudgetSpent` for one that was not begun.
     pub outcome: String,
     /// Where it was measured.
     pub machine: String,
-    /// Milliseconds per simulated second, round by round; empty for a point of another program.
-    #[serde(skip)]
-    pub rounds: Vec<f64>,
 }
 
 impl BodiesPoint {
@@ -168,12 +172,12 @@ impl BodiesStudy {
         sizes
     }
 
-    /// The series that the others are held against: the lecture's solver in this build.
+    /// The series of an engine in the build that measured.
     #[must_use]
-    pub fn base(&self) -> Series<'_> {
+    pub fn own<'a>(&'a self, engine: &'a str) -> Series<'a> {
         Series {
             build: &self.build,
-            engine: BASE,
+            engine,
         }
     }
 
@@ -184,13 +188,5 @@ impl BodiesStudy {
         let points = self.of(series).into_iter();
         let costs = points.filter_map(|point| Some((point.bodies, point.step_us?)));
         Overhead::of(&costs.collect::<Vec<_>>())
-    }
-
-    /// The cost of a series over that of the base at a number of bodies, measured in the same
-    /// rounds; none with too few rounds, or across builds.
-    #[must_use]
-    pub fn ratio(&self, series: Series, bodies: usize) -> Option<Ratio> {
-        let [own, base] = [series, self.base()].map(|series| self.at(series, bodies));
-        paired_ratio(&own?.rounds, &base?.rounds, self.options.timing.seed)
     }
 }

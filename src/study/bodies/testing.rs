@@ -1,8 +1,8 @@
 //! What the tests of the study share.
 
-use super::{BodiesOptions, BodiesPoint, BodiesStudy, Walls};
-use crate::study::Timing;
+use super::{BASE, BodiesOptions, BodiesPoint, BodiesStudy, Walls};
 use crate::study::cost::Machine;
+use crate::study::{Timing, paired_ratio};
 
 pub(crate) const SIZES: [usize; 8] = [4, 10, 30, 100, 300, 1000, 3000, 10_000];
 
@@ -10,14 +10,21 @@ pub(crate) const SIZES: [usize; 8] = [4, 10, 30, 100, 300, 1000, 3000, 10_000];
 pub(crate) fn study(laws: &[(&str, f64, f64)]) -> BodiesStudy {
     let dt = 0.01;
     let mut points = Vec::new();
-    for (place, (engine, power, factor)) in laws.iter().enumerate() {
+    // Seven rounds of each engine at each size: other noise for each engine, around the same median.
+    let rounds = |(place, bodies): (usize, usize)| -> (f64, Vec<f64>) {
+        let (_, power, factor) = laws[place];
+        #[allow(clippy::cast_precision_loss, reason = "ten thousand bodies")]
+        let cost = 1e-3 / dt * factor * (bodies as f64).powf(power);
+        let noise = if place % 2 == 0 { 0.01 } else { -0.02 };
+        let noisy = (-3..=3).map(|round| cost * (1.0 + noise * f64::from(round)));
+        (cost, noisy.collect())
+    };
+    for (place, (engine, _, _)) in laws.iter().enumerate() {
         for bodies in SIZES {
-            #[allow(clippy::cast_precision_loss, reason = "ten thousand bodies")]
-            let step_us = factor * (bodies as f64).powf(*power);
-            let cost = 1e-3 * step_us / dt;
-            // Other noise for each engine, around the same median.
-            let noise = if place % 2 == 0 { 0.01 } else { -0.02 };
-            let rounds = (-3..=3).map(|round| cost * (1.0 + noise * f64::from(round)));
+            let (cost, own) = rounds((place, bodies));
+            let step_us = 1e3 * dt * cost;
+            let base = laws.iter().position(|(name, _, _)| *name == BASE);
+            let ratio = base.and_then(|base| paired_ratio(&own, &rounds((base, bodies)).1, 1));
             points.push(BodiesPoint {
                 build: "default".to_owned(),
                 engine: (*engine).to_owned(),
@@ -32,9 +39,11 @@ pub(crate) fn study(laws: &[(&str, f64, f64)]) -> BodiesStudy {
                 steps: Some(32),
                 force_evaluations: Some(0),
                 pair_tests: Some(32),
+                ratio: ratio.map(|ratio| ratio.median),
+                ratio_low: ratio.map(|ratio| ratio.low),
+                ratio_high: ratio.map(|ratio| ratio.high),
                 outcome: "Finished".to_owned(),
                 machine: "here".to_owned(),
-                rounds: rounds.collect(),
             });
         }
     }

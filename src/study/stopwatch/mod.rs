@@ -24,7 +24,7 @@ use crate::scene::Scene;
 /// A measurement lasts at least about so long; shorter runs are repeated within it.
 const LEAST: Duration = Duration::from_millis(2);
 /// But not more often than this.
-const BATCH_MAX: u32 = 64;
+const BATCH_MAX: u32 = 256;
 /// The rounds end early once they have taken so long for each job …
 const PATIENCE: Duration = Duration::from_millis(2500);
 /// … but not before so many, with which a ratio has an interval.
