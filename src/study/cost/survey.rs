@@ -83,12 +83,8 @@ pub fn scene_cost(
         Some(known) => phases(scene, &stepping, known, options, watch)?,
         None => Vec::new(),
     };
-    if reference.is_some() && phases.len() < options.phases {
-        notes.push(format!(
-            "Of {} later starts exact could take {}.",
-            options.phases,
-            phases.len()
-        ));
+    if reference.is_some() {
+        notes.extend(left_out(phases.len(), options.phases));
     }
     price(&mut points, &runs, stretch, options, watch)?;
     let push_out = match &reference {
@@ -120,6 +116,11 @@ fn cut(scene: &Scene, reference: &Reference) -> Option<String> {
         scene.duration
     );
     (!all).then_some(note)
+}
+
+/// Says so where the exact engine refuses some of the later starts.
+fn left_out(taken: usize, all: usize) -> Option<String> {
+    (taken < all).then(|| format!("Of {all} later starts exact could take {taken}."))
 }
 
 type TakingPart = (Vec<Contender>, Vec<EngineCost>, Vec<Refusal>);
