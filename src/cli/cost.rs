@@ -111,28 +111,30 @@ fn tuned(
     Ok(Some(tuning))
 }
 
-pub(super) fn run(args: &Args) -> Result<()> {
-    let mut specs = specs(&args.names)?;
-    for (argument, is_zero) in [
-        ("repetitions", args.repetitions == 0),
-        ("budget", args.budget == Some(0)),
-        ("runs", args.runs == 0),
+/// Numbers that no study can be made with.
+fn check(args: &Args) -> Result<()> {
+    let phases = format!("give at least {PHASES_MIN}: fewer have no scatter to speak of");
+    let above_zero = || "give a number above 0".to_owned();
+    for (argument, found, least, remedy) in [
+        ("repetitions", args.repetitions as u64, 1, above_zero()),
+        ("budget", args.budget.unwrap_or(1), 1, above_zero()),
+        ("runs", args.runs as u64, 1, above_zero()),
+        ("phases", args.phases as u64, PHASES_MIN as u64, phases),
     ] {
-        if is_zero {
+        if found < least {
             return Err(Error::Argument {
                 argument,
-                found: "0".into(),
-                remedy: "give a number above 0".into(),
+                found: found.to_string(),
+                remedy,
             });
         }
     }
-    if args.phases < PHASES_MIN {
-        return Err(Error::Argument {
-            argument: "phases",
-            found: args.phases.to_string(),
-            remedy: format!("give at least {PHASES_MIN}: fewer have no scatter to speak of"),
-        });
-    }
+    Ok(())
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    let mut specs = specs(&args.names)?;
+    check(args)?;
     let timing = Timing {
         seed: args.seed,
         repetitions: args.repetitions,

@@ -154,6 +154,18 @@ fn the_adaptive_rung_follows_its_tolerance() {
     }
 }
 
+/// A tolerance of 2.6e-20 of the size is below rounding: every step was rejected until it was a
+/// thousandth. Now the seven stages of a step come about once a step.
+#[test]
+fn the_adaptive_rung_used_to_take_a_thousand_steps_for_one_below_rounding() {
+    let scene = orbit();
+    let recording = record(&scene, &engine("adaptive").unwrap(), 1.0 / 4096.0).unwrap();
+    let work = recording.work;
+    assert_eq!(work.steps, 8192);
+    let stages = work.force_evaluations / work.steps;
+    assert!((7..=14).contains(&stages), "{stages}");
+}
+
 /// Drag alone: `x = x0 + v0 (1 - exp(-c t))/c`. The lecture is of order 1, the decay exact.
 #[test]
 fn exact_drag_is_exact() {

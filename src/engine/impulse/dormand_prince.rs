@@ -8,7 +8,7 @@ use crate::physics::Vector3;
 /// The pair of Dormand and Prince, orders 5 and 4, in places and velocities together.
 ///
 /// The step asked for is the longest; shorter ones are taken so that the difference of the two
-/// orders stays below `(dt/duration)^5` of the scene's size. So the error falls with the fifth
+/// orders stays below `(dt/duration)^5` of the scene's size, but for its rounding. So the error falls with the fifth
 /// power of the step asked for, wherever the short steps fall.
 /// Source: Dormand and Prince 1980; Hairer, Nørsett, Wanner, "Solving Ordinary Differential
 /// Equations I", table 5.2 and section II.4 for the choice of steps.
@@ -117,7 +117,9 @@ impl DormandPrince {
             most.max((position * dt).norm())
                 .max((velocity * (dt * dt)).norm())
         });
-        let tolerance = (self.longest / self.duration).powi(5) * self.size;
+        // Below rounding no step is short enough: it would take a thousand for one.
+        let asked = (self.longest / self.duration).powi(5);
+        let tolerance = asked.max(f64::EPSILON) * self.size;
         let share = (error / tolerance).powf(-0.2);
         let is_short = dt <= SHORTEST * self.longest;
         self.rejected = error.is_finite() && error > tolerance && !is_short;

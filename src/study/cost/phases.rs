@@ -1,6 +1,8 @@
 //! Every engine again from later starts: where its steps fall against the events is then
 //! another, and the physics is the same.
 
+use rayon::prelude::*;
+
 use super::contender::{Contender, STOCK};
 use super::survey::{errors, runs};
 use super::{CostOptions, CostPoint, Errors, Reference, Stage, Watcher};
@@ -104,11 +106,12 @@ pub(super) fn phases(
     watch: Watcher,
 ) -> Result<Vec<Phase>> {
     let all = shifts(options.phases, scene.sample_every, options.timing.seed);
+    let starts = all
+        .par_iter()
+        .map(|shift| Ok(Later::of(scene, *shift, known)?.map(|later| (*shift, later))));
+    let starts: Vec<_> = starts.collect::<Result<_>>()?;
     let mut found = Vec::new();
-    for (place, shift) in all.into_iter().enumerate() {
-        let Some(later) = Later::of(scene, shift, known)? else {
-            continue;
-        };
+    for (place, (shift, later)) in starts.into_iter().flatten().enumerate() {
         let contender = |spec: &&EngineSpec| Contender {
             setting: STOCK.to_owned(),
             spec: (*spec).clone(),

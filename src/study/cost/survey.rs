@@ -88,12 +88,8 @@ pub fn scene_cost(
         Some(known) => phases(scene, &stepping, known, options, watch)?,
         None => Vec::new(),
     };
-    if reference.is_some() && phases.len() < options.phases {
-        notes.push(format!(
-            "Of {} later starts exact could take {}.",
-            options.phases,
-            phases.len()
-        ));
+    if reference.is_some() {
+        notes.extend(left_out(phases.len(), options.phases));
     }
     let runs = runs(&contenders, options);
     price(&mut points, &runs, sample, options, watch)?;
@@ -135,6 +131,11 @@ pub(super) struct Measured {
     pub(super) contenders: Vec<Contender>,
     pub(super) points: Vec<CostPoint>,
     pub(super) engines: Vec<EngineCost>,
+}
+
+/// Says so where the exact engine refuses some of the later starts.
+fn left_out(taken: usize, all: usize) -> Option<String> {
+    (taken < all).then(|| format!("Of {all} later starts exact could take {taken}."))
 }
 
 impl Measured {
