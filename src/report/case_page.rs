@@ -227,13 +227,21 @@ fn verdicts(summary: &Summary) -> Vec<String> {
 fn against_truth(summary: &Summary) -> Option<String> {
     let reference = summary.reference.as_ref()?;
     let pair = summary.pair(reference, TRUTH)?;
+    let apart = if pair.position_divergence_max == 0.0 {
+        "agree in every digit".to_owned()
+    } else {
+        let most = with_unit(pair.position_divergence_max, summary.length_unit.symbol());
+        let share = percent(pair.position_divergence_relative);
+        format!("differ by at most {most} ({share} of the size)")
+    };
+    let impacts = match pair.impacts_matched {
+        0 => String::new(),
+        1 => ", with one impact in common".to_owned(),
+        many => format!(", with {many} impacts in common"),
+    };
+    let until = engineering(pair.compared_until_s);
     Some(format!(
-        "The independent truth and {reference} differ by at most {} ({} of the size) up to {} s, \
-         with {} impacts alike.",
-        with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
-        percent(pair.position_divergence_relative),
-        engineering(pair.compared_until_s),
-        pair.impacts_matched
+        "The independent truth and {reference} {apart} up to {until} s{impacts}."
     ))
 }
 

@@ -19,8 +19,7 @@ pub(super) fn sentence(limit: &Limit, unit: &str) -> String {
             with_unit(limit.floor, unit)
         ),
         Remainder::Unsettled => format!(
-            "within the budget it neither settles nor shrinks steadily, and is {finest} at the \
-             finest step"
+            "neither settled nor shrinking steadily within the budget, {finest} at the finest step"
         ),
     };
     format!("The error is *{}*: {told}.", limit.kind.word())
@@ -62,6 +61,6 @@ mod tests {
         assert!(
             says(Remainder::Rounding).contains("*rounding*: at the finest step it is 0.250 mm")
         );
-        assert!(says(Remainder::Unsettled).contains("*unsettled*: within the budget"));
+        assert!(says(Remainder::Unsettled).contains("*unsettled*: neither settled"));
     }
 }
