@@ -9,6 +9,7 @@ mod plan;
 mod report;
 mod run;
 mod scenes;
+mod stability;
 mod studies;
 
 use clap::{Parser, Subcommand};
@@ -33,6 +34,8 @@ enum Command {
     /// Run scenes on every engine over a ladder of steps, or a gas of more and more bodies: what
     /// does accuracy cost in time?
     Cost(cost::Args),
+    /// Run hard cases on every engine and step: which engine survives what?
+    Stability(stability::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
     /// Switch each effect of a scene, one at a time: what it costs, and what it changes
@@ -62,6 +65,7 @@ fn dispatch(command: Command) -> Result<()> {
         Command::Report(args) => report::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Cost(args) => cost::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Scenes(args) => scenes::run(&args),

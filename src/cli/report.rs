@@ -21,7 +21,7 @@ pub(super) struct Args {
     engines: EngineArgs,
     #[command(flatten)]
     library: LibraryArgs,
-    /// Studies to make beside the cases, separated by commas: cost (some minutes). Without it the
+    /// Studies to make beside the cases, separated by commas: cost, stability (some minutes each). Without it the
     /// report tells of those that its folder holds already, with their date
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     studies: Vec<String>,

@@ -1,9 +1,9 @@
 //! The studies that `carom report --studies` can make beside the cases, a row each.
 
-use super::cost;
+use super::{cost, stability};
 use crate::engine::EngineSpec;
 use crate::error::{Error, Result};
-use crate::report::{COST, Folder};
+use crate::report::{COST, Folder, STABILITY};
 use crate::scene::Scene;
 use crate::study::Timing;
 use crate::study::cost::CostOptions;
@@ -26,10 +26,16 @@ pub(super) struct Study {
     make: fn(&Order, &Folder) -> Result<()>,
 }
 
-const STUDIES: [Study; 1] = [Study {
-    name: COST,
-    make: cost::beside_report,
-}];
+const STUDIES: [Study; 2] = [
+    Study {
+        name: COST,
+        make: cost::beside_report,
+    },
+    Study {
+        name: STABILITY,
+        make: stability::beside_report,
+    },
+];
 
 /// Small enough that all cases take about five minutes, and large enough that shots reach steps
 /// below the lecture's own, 0.01 s; long orbits and crowds do not, which `carom cost` is for.

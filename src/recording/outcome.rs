@@ -78,6 +78,18 @@ impl Outcome {
         *self == Self::Finished
     }
 
+    /// When it ended before its time, s.
+    #[must_use]
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            Self::Finished => None,
+            Self::NonFinite { time, .. }
+            | Self::Disabled { time, .. }
+            | Self::BudgetSpent { time }
+            | Self::Collapsed { time, .. } => Some(*time),
+        }
+    }
+
     /// One bare word, for tables.
     #[must_use]
     pub fn word(&self) -> &'static str {

@@ -14,6 +14,7 @@ mod output;
 mod overhead;
 #[cfg(feature = "plots")]
 mod pictures;
+mod stability;
 mod studies;
 mod tables;
 mod template;
@@ -26,4 +27,5 @@ pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};
 pub use index_page::{index_page, write_index};
 pub use output::{Place, write_comparison};
-pub use studies::{COST, Studies};
+pub use stability::{stability_findings, stability_table, write_stability};
+pub use studies::{COST, STABILITY, Studies};

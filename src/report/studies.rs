@@ -10,18 +10,24 @@ use serde::de::DeserializeOwned;
 
 use super::Folder;
 use super::cost::{CostSection, headline};
+use super::stability;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::study::Made;
 use crate::study::cost::{CostSummary, EngineLimit};
+use crate::study::stability::StabilitySummary;
 
 /// The folder of the study of cost.
 pub const COST: &str = "cost";
+/// The folder of the study of stability.
+pub const STABILITY: &str = "stability";
 
 /// What the studies beside a report have found; nothing of those that were never made.
 #[derive(Debug, Default)]
 pub struct Studies {
     report: PathBuf,
     cost: Option<CostSummary>,
+    stability: Option<StabilitySummary>,
 }
 
 /// What the index tells of a study.
@@ -55,12 +61,14 @@ impl Studies {
     #[must_use]
     pub fn read(report: &Folder) -> (Self, Vec<Error>) {
         let mut complaints = Vec::new();
-        let cost = stored(report, COST).unwrap_or_else(|wrong| {
-            complaints.push(wrong);
-            None
-        });
-        let report = report.path().to_owned();
-        (Self { report, cost }, complaints)
+        let cost = kept(stored(report, COST), &mut complaints);
+        let stability = kept(stored(report, STABILITY), &mut complaints);
+        let studies = Self {
+            report: report.path().to_owned(),
+            cost,
+            stability,
+        };
+        (studies, complaints)
     }
 
     /// A line for each study that was made.
@@ -69,9 +77,15 @@ impl Studies {
             title: "What accuracy costs in time",
             folder: COST,
             finding: headline(study),
-            origin: Origin::of(study),
+            origin: Origin::of(&study.made),
         });
-        cost.collect()
+        let stability = self.stability.iter().map(|study| StudyNote {
+            title: "Which engine survives what, at which step",
+            folder: STABILITY,
+            finding: stability::headline(study),
+            origin: Origin::of(&study.made),
+        });
+        cost.chain(stability).collect()
     }
 
     /// What is left of each engine's error on a case as the step goes to 0; nothing where that was
@@ -90,13 +104,13 @@ impl Studies {
         let study = self.cost.as_ref();
         CaseStudies {
             cost: study.and_then(|study| CostSection::of(study, scene, &self.report.join(COST))),
-            cost_origin: study.map(Origin::of),
+            cost_origin: study.map(|study| Origin::of(&study.made)),
         }
     }
 }
 
 impl Origin {
-    fn of(study: &CostSummary) -> Self {
+    fn of(study: &Made) -> Self {
         let now: BTreeMap<String, String> = crate::engine::versions()
             .into_iter()
             .map(|(name, version)| (name.to_owned(), version.to_owned()))
@@ -120,6 +134,14 @@ impl Origin {
             optimised: study.optimised,
         }
     }
+}
+
+/// What was read, or nothing and a complaint.
+fn kept<T>(read: Result<Option<T>>, complaints: &mut Vec<Error>) -> Option<T> {
+    read.unwrap_or_else(|wrong| {
+        complaints.push(wrong);
+        None
+    })
 }
 
 /// The summary that a study has left; none where no study was made, or none that found anything.
@@ -167,7 +189,7 @@ mod tests {
         let scratch = tempfile::tempdir().unwrap();
         let folder = folder(&scratch);
         let mut made = summary(&[("lecture", EngineFamily::Impulse, &[0.5])]);
-        made.date = "2001-02-03".to_owned();
+        made.made.date = "2001-02-03".to_owned();
         leave(&folder, &made);
         let (studies, complaints) = Studies::read(&folder);
         assert!(complaints.is_empty());
@@ -176,7 +198,9 @@ mod tests {
         };
         assert_eq!(note.origin.date, "2001-02-03");
         assert_eq!(note.origin.remark, None);
-        made.versions.insert("carom".to_owned(), "0.0.1".to_owned());
+        made.made
+            .versions
+            .insert("carom".to_owned(), "0.0.1".to_owned());
         leave(&folder, &made);
         let note = &Studies::read(&folder).0.notes()[0];
         let remark = note.origin.remark.as_deref().unwrap();

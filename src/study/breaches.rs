@@ -71,6 +71,46 @@ pub enum Breach {
     EndsOtherwise(Excess),
 }
 
+impl Breach {
+    /// One bare word, for tables: that of the outcome where the run ended early.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Ended { outcome } => outcome.word(),
+            Self::EnergyGrew(_) => "EnergyGrew",
+            Self::EnergyLost(_) => "EnergyLost",
+            Self::MomentumOff(_) => "MomentumOff",
+            Self::Penetrated(_) => "Penetrated",
+            Self::TooFast(_) => "TooFast",
+            Self::MirrorBroken(_) => "MirrorBroken",
+            Self::ContactsOff { .. } => "ContactsOff",
+            Self::ContactsMissed { .. } => "ContactsMissed",
+            Self::CushionsOff { .. } => "CushionsOff",
+            Self::EndsElsewhere(_) => "EndsElsewhere",
+            Self::EndsOtherwise(_) => "EndsOtherwise",
+        }
+    }
+
+    /// When it was seen first, s: what is counted, at the end of the scene.
+    #[must_use]
+    pub fn time(&self, scene: &Scene) -> f64 {
+        match self {
+            Self::Ended { outcome } => outcome.time().unwrap_or(scene.duration),
+            Self::EnergyGrew(excess)
+            | Self::EnergyLost(excess)
+            | Self::MomentumOff(excess)
+            | Self::Penetrated(excess)
+            | Self::TooFast(excess)
+            | Self::MirrorBroken(excess)
+            | Self::EndsElsewhere(excess)
+            | Self::EndsOtherwise(excess) => excess.time,
+            Self::ContactsOff { .. } | Self::ContactsMissed { .. } | Self::CushionsOff { .. } => {
+                scene.duration
+            }
+        }
+    }
+}
+
 impl fmt::Display for Breach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut beyond = |what: &str,

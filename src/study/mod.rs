@@ -4,9 +4,13 @@ pub mod bodies;
 mod breaches;
 pub mod cost;
 mod effects;
+mod machine;
+mod made;
 mod median;
 mod overhead;
 mod side_by_side;
+pub mod stability;
+mod step_work;
 mod stopwatch;
 mod summary;
 mod tracks;
@@ -15,6 +19,8 @@ pub use breaches::{Breach, Excess, breaches};
 pub use effects::{
     Change, Difference, Effect, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects,
 };
+pub use machine::Machine;
+pub use made::Made;
 pub use median::median;
 pub use overhead::Overhead;
 pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};

@@ -52,10 +52,18 @@ pub(super) struct Canvas<'a> {
 pub(super) fn picture(
     draw: impl FnOnce(&Canvas) -> Result<(), ChartError>,
 ) -> Result<Vec<u8>, ChartError> {
+    picture_high(SIZE[1], draw)
+}
+
+/// Draws a picture of another height, px, and encodes it.
+pub(super) fn picture_high(
+    height: u32,
+    draw: impl FnOnce(&Canvas) -> Result<(), ChartError>,
+) -> Result<Vec<u8>, ChartError> {
     register()?;
     let mut svg = String::new();
     let scale = u32::from(UNITS_PER_PX);
-    let size = (SIZE[0] * scale, SIZE[1] * scale);
+    let size = (SIZE[0] * scale, height * scale);
     let inks = {
         let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         area.fill(&PAPER)?;

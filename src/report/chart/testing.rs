@@ -6,6 +6,8 @@ use super::theme::SIZE;
 pub(super) struct Image {
     /// Colours, row by row.
     pub(super) pixels: Vec<[u8; 3]>,
+    /// How many rows there are.
+    pub(super) height: usize,
 }
 
 impl Image {
@@ -25,16 +27,24 @@ impl Image {
 
 /// Decodes a PNG and checks its size.
 pub(super) fn decode(bytes: &[u8]) -> Image {
+    let image = decode_high(bytes);
+    assert_eq!(image.height, SIZE[1] as usize);
+    image
+}
+
+/// Decodes a PNG of any height and checks its width.
+pub(super) fn decode_high(bytes: &[u8]) -> Image {
     let mut decoder = ::png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(::png::Transformations::EXPAND);
     let mut reader = decoder.read_info().unwrap();
     let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut buffer).unwrap();
-    assert_eq!([info.width, info.height], SIZE);
+    assert_eq!(info.width, SIZE[0]);
     assert_eq!(info.color_type, ::png::ColorType::Rgb);
     let pixels = buffer[..info.buffer_size()]
         .chunks_exact(3)
         .map(|pixel| [pixel[0], pixel[1], pixel[2]])
         .collect();
-    Image { pixels }
+    let height = info.height as usize;
+    Image { pixels, height }
 }

@@ -80,7 +80,7 @@ pub(super) fn page(
     let page = Page {
         summary,
         headline: (scenes.len() > 1).then(|| headline(summary)),
-        busy: summary.machine.is_busy(),
+        busy: summary.made.machine.is_busy(),
         tuning,
         parts: OVERHEAD_HEADER,
         scenes,

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::recording::{Outcome, Work, initial_states};
 use crate::scene::Scene;
 use crate::scene::generate::Gas;
-use crate::study::cost::Machine;
+use crate::study::Machine;
 use crate::study::stopwatch::{Job, Price, paired, prices};
 use crate::study::{Refusal, median, paired_ratio};
 

@@ -13,7 +13,7 @@ pub use measure::bodies_cost;
 
 use serde::{Deserialize, Serialize};
 
-use super::cost::Machine;
+use super::Machine;
 use super::{Overhead, Refusal, Timing};
 use crate::recording::Outcome;
 

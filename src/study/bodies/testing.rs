@@ -1,7 +1,7 @@
 //! What the tests of the study share.
 
 use super::{BASE, BodiesOptions, BodiesPoint, BodiesStudy, Walls};
-use crate::study::cost::Machine;
+use crate::study::Machine;
 use crate::study::{Timing, paired_ratio};
 
 pub(crate) const SIZES: [usize; 8] = [4, 10, 30, 100, 300, 1000, 3000, 10_000];

@@ -1,29 +1,22 @@
 //! The findings of a study of cost, as programs read them (`summary.json`) and pages show them,
 //! today's and those of a study that was stored.
 
-use std::collections::BTreeMap;
-use std::time::SystemTime;
-
 use serde::{Deserialize, Serialize};
 
-use super::{CostOptions, CostPoint, EngineLimit, Machine, PriceTag, SceneCost, Sensitivity};
+use super::{CostOptions, CostPoint, EngineLimit, PriceTag, SceneCost, Sensitivity};
 use crate::engine::{EngineKind, EngineSpec};
 use crate::error::Result;
 use crate::scene::{LengthUnit, Scene, to_toml};
+use crate::study::Made;
 
 /// A study of cost over some scenes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CostSummary {
-    /// The day it was begun, UTC, as 2026-01-31.
-    pub date: String,
-    /// Versions of carom and Rapier that were measured.
-    pub versions: BTreeMap<String, String>,
-    /// The machine that the prices hold for.
-    pub machine: Machine,
+    /// When, with what and where it was made.
+    #[serde(flatten)]
+    pub made: Made,
     /// How it was made.
     pub options: CostOptions,
-    /// Whether carom was built for speed; otherwise prices mean nothing.
-    pub optimised: bool,
     /// Each scene.
     pub scenes: Vec<SceneCostSummary>,
 }
@@ -100,15 +93,9 @@ impl CostSummary {
     /// A study begun today, on this machine, with nothing measured yet.
     #[must_use]
     pub fn begin(options: CostOptions) -> Self {
-        let versions = crate::engine::versions().into_iter();
         Self {
-            date: day(SystemTime::now()),
-            versions: versions
-                .map(|(k, v)| (k.to_owned(), v.to_owned()))
-                .collect(),
-            machine: Machine::this(),
+            made: Made::now(),
             options,
-            optimised: !cfg!(debug_assertions),
             scenes: Vec::new(),
         }
     }
@@ -208,32 +195,11 @@ impl Bid {
     }
 }
 
-/// The day of an instant, UTC, as ISO 8601 has it; a clock set before 1970 counts as 1970.
-fn day(now: SystemTime) -> String {
-    let now = now.max(SystemTime::UNIX_EPOCH);
-    let instant = humantime::format_rfc3339_seconds(now).to_string();
-    let (day, _) = instant.split_once('T').unwrap_or((&instant, ""));
-    day.to_owned()
-}
-
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::super::testing::study;
     use super::*;
     use crate::study::Timing;
-
-    #[test]
-    fn days_are_those_of_the_calendar() {
-        let at = |seconds| day(SystemTime::UNIX_EPOCH + Duration::from_secs(seconds));
-        assert_eq!(at(0), "1970-01-01");
-        // `date -u -d 2024-02-29T23:59:59Z +%s`
-        assert_eq!(at(1_709_251_199), "2024-02-29");
-        assert_eq!(at(1_709_251_200), "2024-03-01");
-        let before = SystemTime::UNIX_EPOCH - Duration::from_secs(1);
-        assert_eq!(day(before), "1970-01-01");
-    }
 
     #[test]
     fn what_is_stored_is_read_back_and_names_the_cheapest() {

@@ -1,0 +1,152 @@
+//! `carom stability`: which engine survives what, at which step.
+
+use std::path::PathBuf;
+
+use super::args::chosen;
+use super::output::{progress, say};
+use super::studies::Order;
+use crate::case::Library;
+use crate::engine::{EngineSpec, engines};
+use crate::error::{Error, Result};
+use crate::report::{Folder, stability_findings, stability_table, write_stability};
+use crate::study::stability::{
+    Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
+};
+
+/// Work a run may take unless told otherwise: a thousand balls for two thousand steps.
+const BUDGET: u64 = 1_100_000_000;
+
+/// The engines of the maps, if they take part; more panels would be too narrow.
+const MAPPED: [&str; 4] = ["lecture", "verlet", "rapier-f64", "robust"];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Names of hard cases [default: all]
+    cases: Vec<String>,
+    /// Engines, separated by commas [default: all but exact, which is exact-fast with certificates]
+    #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
+    names: Vec<String>,
+    /// Folder of hard cases [default: hard/ if there is one, else those compiled in]
+    #[arg(long, value_name = "DIR")]
+    hard: Option<PathBuf>,
+    /// Work a run may take, in steps x (bodies + pairs)
+    #[arg(long, default_value_t = BUDGET)]
+    budget: u64,
+    /// Folder for the files
+    #[arg(long, value_name = "DIR", default_value = "runs/stability")]
+    out: PathBuf,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// Print the summary as JSON instead of the table
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Every engine that this build has, in order; without the one that certifies, whose steps are
+/// those of `exact-fast`.
+fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
+    if !names.is_empty() {
+        return chosen(names, &[]);
+    }
+    let built = engines().into_iter().filter(EngineSpec::is_built);
+    Ok(built.filter(|spec| spec.name != "exact").collect())
+}
+
+fn cases(names: &[String], library: &Library) -> Result<Vec<Bounded>> {
+    let mut names = if names.is_empty() {
+        library.names()?
+    } else {
+        names.to_vec()
+    };
+    names.sort();
+    names.dedup();
+    let mut cases = Vec::new();
+    for name in &names {
+        let case = Bounded::of(library.case(name)?);
+        cases.push(case.ok_or_else(|| {
+            Error::Argument {
+                argument: "cases",
+                found: name.clone(),
+                remedy: "it has no expected.toml that says what must hold; see `carom scenes list \
+                     --hard`"
+                    .into(),
+            }
+        })?);
+    }
+    if cases.is_empty() {
+        return Err(Error::NoCases);
+    }
+    Ok(cases)
+}
+
+fn make(
+    cases: &[Bounded],
+    specs: &[EngineSpec],
+    budget: u64,
+    folder: &Folder,
+    quiet: bool,
+) -> Result<(StabilityStudy, StabilitySummary)> {
+    let bar = progress(1, quiet);
+    let study = stability(cases, specs, budget, &|case, done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        bar.set_message(case.to_owned());
+    })?;
+    bar.set_message("maps");
+    let mapped = specs
+        .iter()
+        .filter(|spec| MAPPED.contains(&spec.name.as_str()));
+    let mapped: Vec<EngineSpec> = mapped.cloned().collect();
+    let kinds = [MapKind::Spring, MapKind::Orbit].into_iter();
+    let maps = kinds
+        .filter(|_| !mapped.is_empty())
+        .map(|kind| stability_map(kind, &mapped));
+    let maps = maps.collect::<Result<Vec<_>>>()?;
+    bar.finish_and_clear();
+    let summary = write_stability(folder, &study, &maps)?;
+    Ok((study, summary))
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    if args.budget == 0 {
+        return Err(Error::Argument {
+            argument: "budget",
+            found: "0".into(),
+            remedy: "give a number above 0".into(),
+        });
+    }
+    let specs = specs(&args.names)?;
+    let library = match &args.hard {
+        Some(folder) => Library::choose(Some(folder)),
+        None => Library::hard(),
+    };
+    let cases = cases(&args.cases, &library)?;
+    let folder = Folder::open(&args.out)?;
+    let (study, summary) = make(&cases, &specs, args.budget, &folder, args.quiet)?;
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return say(serde_json::to_string_pretty(&summary)?);
+    }
+    say(stability_table(&summary))?;
+    for finding in stability_findings(&study, &summary) {
+        say(finding)?;
+    }
+    say(format_args!(
+        "Written to {}",
+        folder.path().join("README.md").display()
+    ))
+}
+
+/// The study as a part of a report: of the hard cases, whatever the cases of the report are.
+pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
+    let specs = match order.engines {
+        Some(engines) => engines.to_vec(),
+        None => specs(&[])?,
+    };
+    let cases = cases(&[], &Library::hard())?;
+    make(&cases, &specs, BUDGET, folder, order.quiet)?;
+    Ok(())
+}

@@ -1,0 +1,77 @@
+//! The findings of a study of stability, as programs read them (`summary.json`) and the index of
+//! a report tells them, today's and those of a study that was stored.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Judged, StabilityStudy};
+use crate::study::Made;
+
+/// How many of its cells an engine held.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Score {
+    /// The engine.
+    pub engine: String,
+    /// Cells in which every bound held.
+    pub held: usize,
+    /// All its cells that were run.
+    pub run: usize,
+    /// Cells that it refused or that were beyond the budget of work.
+    pub not_run: usize,
+    /// Cases that it held at every step.
+    pub cases_held: usize,
+}
+
+/// A study of stability.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilitySummary {
+    /// When, with what and where it was made.
+    #[serde(flatten)]
+    pub made: Made,
+    /// How many cases there are.
+    pub cases: usize,
+    /// The engines in the order of the study.
+    pub scores: Vec<Score>,
+    /// Every cell that did not hold: what was broken first, and by which phase.
+    pub failures: Vec<Judged>,
+}
+
+impl StabilitySummary {
+    /// Of a study made today.
+    #[must_use]
+    pub fn of(study: &StabilityStudy) -> Self {
+        let failures = study.cells.iter().filter(|judged| !judged.cell.holds());
+        Self {
+            made: Made::now(),
+            cases: study.cases.len(),
+            scores: study
+                .engines
+                .iter()
+                .map(|spec| Score::of(study, &spec.name))
+                .collect(),
+            failures: failures.cloned().collect(),
+        }
+    }
+}
+
+impl Score {
+    fn of(study: &StabilityStudy, engine: &str) -> Self {
+        let mut score = Self {
+            engine: engine.to_owned(),
+            held: 0,
+            run: 0,
+            not_run: 0,
+            cases_held: 0,
+        };
+        for (case, _) in &study.cases {
+            let mut all_held = true;
+            for Judged { cell, .. } in study.of(case, engine) {
+                score.held += usize::from(cell.holds());
+                score.run += usize::from(cell.was_run());
+                score.not_run += usize::from(!cell.was_run());
+                all_held &= cell.holds();
+            }
+            score.cases_held += usize::from(all_held);
+        }
+        score
+    }
+}
