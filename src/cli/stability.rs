@@ -13,7 +13,7 @@ use crate::study::stability::{
     Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
 };
 
-/// Work a run may take unless told otherwise: a thousand balls for two thousand steps.
+/// Work a run may count unless told otherwise: a thousand balls for two thousand steps.
 const BUDGET: u64 = 1_100_000_000;
 
 /// The engines of the maps, if they take part; more panels would be too narrow.
@@ -29,7 +29,7 @@ pub(super) struct Args {
     /// Folder of hard cases [default: hard/ if there is one, else those compiled in]
     #[arg(long, value_name = "DIR")]
     hard: Option<PathBuf>,
-    /// Work a run may take, in steps x (bodies + pairs)
+    /// Work a run may count: steps, looks at pairs, evaluations of forces
     #[arg(long, default_value_t = BUDGET)]
     budget: u64,
     /// Folder for the files

@@ -11,7 +11,7 @@ mod steps;
 
 pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
-pub use record::{drive, drive_to, record};
+pub use record::{drive, drive_to, record, record_within};
 pub use spec::{
     CcdBody, DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Impacts, ImpulseSettings,
     Integrator, LengthScale, Precision, RapierSettings, engine, engines,

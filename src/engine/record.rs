@@ -2,7 +2,7 @@
 
 use super::{EngineKind, EngineSpec, Simulation, StepGrid, exact, prepare};
 use crate::error::Result;
-use crate::recording::{Recording, initial_states};
+use crate::recording::{Outcome, Recording, initial_states};
 use crate::scene::Scene;
 
 /// Runs an engine on a scene and records every sample and event.
@@ -12,13 +12,23 @@ use crate::scene::Scene;
 /// # Errors
 /// As [`prepare`]. A blow-up is no error but the recording's outcome.
 pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
+    record_within(scene, spec, dt, u64::MAX)
+}
+
+/// The same with a bound on the counted work: past it, at the next sample, the recording ends as
+/// [`Outcome::BudgetSpent`]. The engine `exact` has a bound of its own.
+///
+/// # Errors
+/// As [`record`].
+pub fn record_within(scene: &Scene, spec: &EngineSpec, dt: f64, budget: u64) -> Result<Recording> {
     if let EngineKind::Exact(settings) = spec.kind
         && settings.certify
     {
         return exact::record(scene, &spec.name, settings);
     }
     let mut simulation = prepare(scene, spec, dt)?;
-    let mut recording = drive(scene, &spec.name, simulation.as_mut());
+    let last = scene.sample_count();
+    let mut recording = drive_within(scene, &spec.name, simulation.as_mut(), last, budget);
     let step = StepGrid::new(scene, dt)?.step;
     recording.step = spec.takes_steps().then_some(step);
     Ok(recording)
@@ -40,12 +50,27 @@ pub fn drive_to(
     simulation: &mut dyn Simulation,
     last: usize,
 ) -> Recording {
+    drive_within(scene, voice, simulation, last, u64::MAX)
+}
+
+fn drive_within(
+    scene: &Scene,
+    voice: &str,
+    simulation: &mut dyn Simulation,
+    last: usize,
+    budget: u64,
+) -> Recording {
     let mut recording = Recording::at_start(voice, scene);
     let mut states = initial_states(scene);
     for sample in 1..=last {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
         simulation.state_into(&mut states);
         if !recording.keep(scene, halt, &states) {
+            break;
+        }
+        if sample < last && simulation.work().total() > budget {
+            let time = scene.sample_time(sample);
+            recording.outcome = Outcome::BudgetSpent { time };
             break;
         }
     }

@@ -35,6 +35,16 @@ pub struct Work {
     pub force_evaluations: u64,
 }
 
+impl Work {
+    /// All of it as one number: steps, looks and evaluations.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.steps
+            .saturating_add(self.pair_tests)
+            .saturating_add(self.force_evaluations)
+    }
+}
+
 impl std::ops::Sub for Work {
     type Output = Self;
 

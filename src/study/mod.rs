@@ -10,7 +10,6 @@ mod median;
 mod overhead;
 mod side_by_side;
 pub mod stability;
-mod step_work;
 mod stopwatch;
 mod summary;
 mod tracks;

@@ -15,6 +15,11 @@ use crate::recording::{Account, EventKind, Wall};
 /// that pile up, as on a floor, have no end.
 const IMPACTS_A_BODY: usize = 10;
 
+/// Looks at pairs in one step after which the same holds: every impact looks at all pairs anew, so
+/// that the impacts of a crowd in one step would cost its number cubed. A hundred bodies are not
+/// bound by this; a thousand have eight impacts in a step.
+const LOOKS_A_STEP: usize = 4_000_000;
+
 /// Share of a step below which two instants are one.
 const INSTANT: f64 = 1e-13;
 
@@ -47,7 +52,7 @@ impl Handling for Sweep {
     ) -> Taken {
         let mut taken = Taken::default();
         let mut left = dt;
-        let mut impacts = IMPACTS_A_BODY * particles.len();
+        let mut impacts = most_impacts(particles.len());
         while left > 0.0 {
             let length = motion.length(left);
             self.start.clear();
@@ -86,6 +91,12 @@ impl Handling for Sweep {
         }
         taken
     }
+}
+
+/// How many impacts of these bodies a step follows to their time.
+fn most_impacts(bodies: usize) -> usize {
+    let pairs = (bodies * bodies.saturating_sub(1) / 2).max(1);
+    (IMPACTS_A_BODY * bodies).min((LOOKS_A_STEP / pairs).max(1))
 }
 
 impl Sweep {

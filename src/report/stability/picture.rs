@@ -22,9 +22,8 @@ fn tone(cell: &Cell) -> Tone {
     match cell.outcome.as_str() {
         "Finished" => Tone::Good,
         "EnergyGrew" => Tone::Bad,
-        "NonFinite" | "Disabled" | "Collapsed" => Tone::Broken,
+        "NonFinite" | "Disabled" | "Collapsed" | "BudgetSpent" => Tone::Broken,
         _ if !cell.was_run() => Tone::Absent,
-        "BudgetSpent" => Tone::Broken,
         _ => Tone::Poor,
     }
 }
@@ -38,8 +37,8 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
         (Tone::Good, "every bound held"),
         (Tone::Poor, "a bound broken"),
         (Tone::Bad, "energy grew"),
-        (Tone::Broken, "broke down"),
-        (Tone::Absent, "refused or over budget"),
+        (Tone::Broken, "ended early"),
+        (Tone::Absent, "refused"),
     ];
     let columns = summary.scores.iter().map(|score| MatrixColumn {
         name: score.engine.clone(),

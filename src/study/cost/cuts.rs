@@ -6,7 +6,6 @@ use crate::engine::{DEFAULT_DT, EngineSpec, StepGrid, record};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::study::Overhead;
-use crate::study::step_work::work_a_step;
 use crate::study::stopwatch::{Job, prices};
 
 /// What a step of an engine costs on a scene cut to its first bodies.
@@ -41,7 +40,7 @@ fn cut(scene: &Scene, bodies: usize) -> Scene {
 /// The last sample to be timed: as far as the scene is priced, or as far as the budget reaches;
 /// none where it does not reach two samples.
 fn last(scene: &Scene, grid: StepGrid, sample: usize, budget: u64) -> Option<usize> {
-    let work = work_a_step(scene).saturating_mul(grid.steps_per_sample);
+    let work = super::ladder::work_a_step(scene).saturating_mul(grid.steps_per_sample);
     let affordable = usize::try_from(budget / work.max(1)).unwrap_or(usize::MAX);
     let last = sample.min(affordable);
     (last >= 2).then_some(last)

@@ -3,7 +3,6 @@
 use crate::engine::StepGrid;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::study::step_work::work_a_step;
 
 /// More rungs than this say nothing new: the step is then a millionth of the sample spacing.
 const RUNGS_MAX: u32 = 21;
@@ -40,6 +39,12 @@ pub fn ladder(scene: &Scene, budget: u64) -> Vec<Rung> {
         }
     }
     rungs
+}
+
+/// The work that a step of any engine is counted as: bodies and pairs.
+pub(super) fn work_a_step(scene: &Scene) -> u64 {
+    let bodies = scene.bodies.len() as u64;
+    bodies + bodies * bodies.saturating_sub(1) / 2
 }
 
 /// The steps that all of these scenes can take, s, from coarse to fine: halves of the longest

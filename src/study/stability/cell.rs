@@ -6,15 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Expected;
 use crate::compare::{Metrics, metrics};
-use crate::engine::{EngineKind, EngineSpec, StepGrid, prepare, record};
+use crate::engine::{EngineKind, EngineSpec, prepare, record_within};
 use crate::error::{Error, Result};
 use crate::recording::{Account, Recording, initial_states};
 use crate::scene::Scene;
 use crate::study::breaches::{Breach, breaches};
-use crate::study::step_work::work_a_step;
 
-/// What stands for a run that was not begun because it would take more work than allowed.
-const BUDGET_SPENT: &str = "BudgetSpent";
 /// What stands for an engine that cannot do the case.
 const REFUSED: &str = "Refused";
 
@@ -77,10 +74,10 @@ pub struct Judged {
 
 /// Runs a case on an engine with a step and judges it.
 ///
-/// `budget` bounds the work of a run, in steps x (bodies + pairs).
+/// `budget` bounds the work that a run may count: steps, looks at pairs, evaluations of forces.
 ///
 /// # Errors
-/// As [`record`]; an engine that cannot do the case is a result.
+/// As [`record_within`]; an engine that cannot do the case is a result.
 pub fn judge(
     scene: &Scene,
     expected: &Expected,
@@ -101,23 +98,16 @@ pub fn judge(
         steps: None,
         cost_ms: None,
     };
-    let unrun = |outcome: &str, why: String| Judged {
-        cell: cell(outcome),
-        broken: Some(why),
-        phase: None,
-        impacts: None,
-    };
-    let steps = StepGrid::new(scene, dt)?.steps_per_sample * scene.sample_count() as u64;
-    let work = steps.saturating_mul(work_a_step(scene));
-    if spec.takes_steps() && work > budget {
-        let why = format!("not run: {work} steps x (bodies + pairs), {budget} are allowed");
-        return Ok(unrun(BUDGET_SPENT, why));
-    }
     let begin = Instant::now();
-    let recording = match record(scene, spec, dt) {
+    let recording = match record_within(scene, spec, dt, budget) {
         Ok(recording) => recording,
         Err(refusal @ Error::EngineCannot { .. }) => {
-            return Ok(unrun(REFUSED, refusal.to_string()));
+            return Ok(Judged {
+                cell: cell(REFUSED),
+                broken: Some(refusal.to_string()),
+                phase: None,
+                impacts: None,
+            });
         }
         Err(error) => return Err(error),
     };

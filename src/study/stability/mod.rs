@@ -23,7 +23,7 @@ pub struct StabilityStudy {
     /// A cell for each case, engine and step of the case, in that order; an engine without steps
     /// has one.
     pub cells: Vec<Judged>,
-    /// Work that one run may take, in steps x (bodies + pairs).
+    /// Work that one run may count: steps, looks at pairs, evaluations of forces.
     pub budget: u64,
 }
 

@@ -15,7 +15,7 @@ pub struct Score {
     pub held: usize,
     /// All its cells that were run.
     pub run: usize,
-    /// Cells that it refused or that were beyond the budget of work.
+    /// Cells that it refused.
     pub not_run: usize,
     /// Cases that it held at every step.
     pub cases_held: usize,
