@@ -119,6 +119,8 @@ impl fmt::Display for Breach {
                               worst,
                               allowed,
                           }: &Excess| {
+            // Times are n times the spacing of samples, rounded: 0.1 + 0.2.
+            let time = (time * 1e9).round() / 1e9;
             write!(
                 f,
                 "{what} {worst:.3e} where {allowed:.3e} is allowed, from {time} s on"

@@ -27,6 +27,7 @@ mod plan;
 mod rapier;
 mod robust;
 mod scenes;
+mod stability;
 mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;

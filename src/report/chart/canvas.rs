@@ -75,7 +75,12 @@ pub(super) fn picture_high(
         canvas.area.present()?;
         canvas.inks.into_inner()
     };
-    png::from_svg(&svg, 1.0 / f32::from(UNITS_PER_PX), &inks)
+    png::from_svg(
+        &svg,
+        [SIZE[0], height],
+        1.0 / f32::from(UNITS_PER_PX),
+        &inks,
+    )
 }
 
 impl Canvas<'_> {

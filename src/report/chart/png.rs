@@ -7,7 +7,6 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
 use super::ChartError;
-use super::theme::SIZE;
 
 /// The letters. Loaded once: the database only points to the bytes in the program.
 static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
@@ -23,10 +22,11 @@ const PALETTE_SIZE: usize = 256;
 /// smaller.
 const SAME: u32 = 48;
 
-/// The picture of an SVG document, drawn `scale` times its size. The colours it was
+/// The picture of an SVG document, of `size` pixels and drawn `scale` times the size it has. The colours it was
 /// drawn with, `inks`, are kept exactly.
 pub(super) fn from_svg(
     svg: &str,
+    size: [u32; 2],
     scale: f32,
     inks: &BTreeSet<[u8; 3]>,
 ) -> Result<Vec<u8>, ChartError> {
@@ -37,7 +37,7 @@ pub(super) fn from_svg(
         ..Options::default()
     };
     let tree = Tree::from_str(svg, &options)?;
-    let mut pixmap = Pixmap::new(SIZE[0], SIZE[1]).ok_or(ChartError::Canvas)?;
+    let mut pixmap = Pixmap::new(size[0], size[1]).ok_or(ChartError::Canvas)?;
     let transform = Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut pixmap.as_mut());
     let pixels: Vec<[u8; 3]> = pixmap
@@ -45,12 +45,16 @@ pub(super) fn from_svg(
         .iter()
         .map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
         .collect();
-    indexed_png(&pixels, inks)
+    indexed_png(&pixels, size, inks)
 }
 
 /// Encodes opaque pixels with a palette of the inks and of the most frequent other colours
 /// (shades of smoothed edges) that differ from each other; the rest become the nearest.
-fn indexed_png(pixels: &[[u8; 3]], inks: &BTreeSet<[u8; 3]>) -> Result<Vec<u8>, ChartError> {
+fn indexed_png(
+    pixels: &[[u8; 3]],
+    size: [u32; 2],
+    inks: &BTreeSet<[u8; 3]>,
+) -> Result<Vec<u8>, ChartError> {
     let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     for pixel in pixels {
         *counts.entry(*pixel).or_default() += 1;
@@ -72,7 +76,7 @@ fn indexed_png(pixels: &[[u8; 3]], inks: &BTreeSet<[u8; 3]>) -> Result<Vec<u8>, 
     let indices: Vec<u8> = pixels.iter().map(|pixel| index[pixel]).collect();
 
     let mut bytes = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut bytes, SIZE[0], SIZE[1]);
+    let mut encoder = ::png::Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(::png::ColorType::Indexed);
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_palette(palette.concat());
@@ -102,6 +106,7 @@ fn distance(a: [u8; 3], b: [u8; 3]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::super::testing::decode;
+    use super::super::theme::SIZE;
     use super::*;
 
     #[test]
@@ -115,7 +120,7 @@ mod tests {
         for (shade, pixel) in (0..=255).zip(&mut pixels[..256]) {
             *pixel = [shade, shade / 2, 255 - shade];
         }
-        let image = decode(&indexed_png(&pixels, &inks).unwrap());
+        let image = decode(&indexed_png(&pixels, SIZE, &inks).unwrap());
         assert_eq!(image.pixels[256..], pixels[256..]);
         for (found, wanted) in image.pixels.iter().zip(&pixels) {
             assert!(
@@ -131,7 +136,7 @@ mod tests {
         let byte = |i: usize| u8::try_from(i % 12 * 23).unwrap();
         let cube = |i: usize| [byte(i), byte(i / 12), byte(i / 144)];
         let pixels: Vec<[u8; 3]> = (0..count).map(cube).collect();
-        let image = decode(&indexed_png(&pixels, &BTreeSet::new()).unwrap());
+        let image = decode(&indexed_png(&pixels, SIZE, &BTreeSet::new()).unwrap());
         for (found, wanted) in image.pixels.iter().zip(&pixels) {
             assert!(
                 distance(*found, *wanted) <= 4 * SAME * SAME,

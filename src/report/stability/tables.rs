@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use crate::engine::{EngineKind, versions};
 use crate::report::format::engineering;
 use crate::study::stability::{Judged, MapKind, StabilityMap, StabilityStudy, StabilitySummary};
 
@@ -21,6 +22,7 @@ pub(super) fn write_cells(study: &StabilityStudy, out: &mut dyn Write) -> io::Re
 struct Failure<'a> {
     case: &'a str,
     engine: &'a str,
+    version: String,
     dt: Option<f64>,
     outcome: &'a str,
     at_time: Option<f64>,
@@ -42,6 +44,7 @@ pub(super) fn write_failures(study: &StabilityStudy, out: &mut dyn Write) -> io:
         table.serialize(Failure {
             case: &cell.case,
             engine: &cell.engine,
+            version: version(study, &cell.engine),
             dt: cell.dt,
             outcome: &cell.outcome,
             at_time: cell.at_time,
@@ -50,6 +53,21 @@ pub(super) fn write_failures(study: &StabilityStudy, out: &mut dyn Write) -> io:
         })?;
     }
     table.flush()
+}
+
+/// The program that a finding about an engine holds for.
+fn version(study: &StabilityStudy, engine: &str) -> String {
+    let mut specs = study.engines.iter();
+    let own = match specs
+        .find(|spec| spec.name == engine)
+        .map(|spec| &spec.kind)
+    {
+        Some(EngineKind::Rapier(_)) => "rapier3d",
+        _ => "carom",
+    };
+    let known = versions();
+    let version = known.get(own).copied().unwrap_or_default();
+    format!("{own} {version}")
 }
 
 /// Writes the table of a map: a row for every run.
