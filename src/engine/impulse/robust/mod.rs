@@ -169,18 +169,28 @@ impl Robust {
             self.start.clear();
             self.start.extend_from_slice(particles);
             length = self.press_on(phases, particles, dt, length);
-            let Some(next) = self.first(phases, particles, length, dt) else {
+            let next = self.first(phases, particles, length, dt);
+            self.unload(particles);
+            let Some(next) = next else {
                 self.book_motion(phases, particles, length, observer);
                 left = if length >= left { 0.0 } else { left - length };
                 Self::stop_slow(phases, particles, left, observer);
                 continue;
             };
             let went = self.go_to(phases, particles, dt, next);
+            self.unload(particles);
             self.book_motion(phases, particles, went, observer);
             left = (left - went).max(0.0);
             self.meet(phases, particles, dt, next, left, observer);
         }
         self.work.taken
+    }
+
+    /// Takes the pushes out of the forces: what is left says how hard bodies are pulled together.
+    fn unload(&self, particles: &mut [Particle]) {
+        for (particle, push) in particles.iter_mut().zip(&self.pushes) {
+            particle.force -= push;
+        }
     }
 
     /// Books a motion from the start of the step, pushes of walls included.

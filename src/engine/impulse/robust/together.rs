@@ -91,7 +91,6 @@ impl Instant<'_> {
         let mut stops = vec![0; self.stopped_len()];
         let mut first = 0.0_f64;
         for round in 0.. {
-            settled.rounds += 1;
             let inverse = self.inverse_masses(&stops);
             let violated: Vec<(Touch, f64)> = self
                 .touches
@@ -105,6 +104,7 @@ impl Instant<'_> {
                 }
                 break;
             }
+            settled.rounds += 1;
             let worst = violated
                 .iter()
                 .fold(0.0_f64, |most, (_, rate)| most.max(-rate));

@@ -10,6 +10,9 @@ use crate::recording::{EventKind, Wall};
 const NEAR: f64 = 1e-10;
 /// … or nearer than so many roundings of the coordinates.
 const ROUNDINGS: f64 = 16.0;
+/// Bounces lower than this share of the smaller radius end, where they lose anyway: a pile of
+/// balls comes to rest, and need not be followed through ever smaller and more frequent bounces.
+const LOW: f64 = 1e-6;
 /// Slower than this share of their speeds, and of what their forces make of them in a step, two
 /// surfaces neither approach nor part.
 const STILL: f64 = 1e-12;
@@ -28,6 +31,8 @@ pub(super) struct Touch {
     pub(super) gap: f64,
     /// Nearer than this they touch.
     pub(super) near: f64,
+    /// Bounces lower than this end.
+    low: f64,
     /// Rounding of the gap.
     rounding: f64,
 }
@@ -49,6 +54,7 @@ impl Touch {
                     restitution: phases.contact?.restitution,
                     gap: distance - (one.radius + other.radius),
                     near: near(one.radius.min(other.radius), far),
+                    low: LOW * one.radius.min(other.radius),
                     rounding: 2.0 * f64::EPSILON * (far + one.radius + other.radius),
                 })
             }
@@ -67,6 +73,7 @@ impl Touch {
                     restitution: cushions.restitution,
                     gap: half - particle.radius - particle.position[axis] * side,
                     near: near(particle.radius, half.max(particle.position.amax())),
+                    low: LOW * particle.radius,
                     rounding: 2.0 * f64::EPSILON * (half.max(particle.position.amax())),
                 })
             }
@@ -100,11 +107,16 @@ impl Touch {
         STILL * (speed + acceleration * dt)
     }
 
-    /// A bounce slower than this would not rise above what counts as touching:
-    /// `u² = 2 a near`.
+    /// A bounce slower than this would not rise above what counts as touching or, where bounces
+    /// lose, above a height that does not show: `u² = 2 a h`.
     pub(super) fn slowest_bounce(&self, particles: &[Particle]) -> f64 {
         let [_, acceleration] = self.sizes(particles);
-        (2.0 * acceleration * self.near).sqrt()
+        let height = if self.restitution < 1.0 {
+            self.near.max(self.low)
+        } else {
+            self.near
+        };
+        (2.0 * acceleration * height).sqrt()
     }
 
     /// The touch at the end of a step, with its normal along the mean separation over the step:
