@@ -29,9 +29,9 @@ use super::{Particle, books};
 use crate::physics::{SpringDamper, Vector3};
 use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
 use crate::scene::Scene;
-use flow::{Flight, Flow};
+use flow::Flow;
 use limits::Limits;
-use search::Next;
+use search::{Counted, Next};
 use together::Instant;
 use touch::{Touch, touching};
 use work::Work;
@@ -46,7 +46,7 @@ pub struct Robust {
     limits: Limits,
     start: Vec<Particle>,
     before: Vec<Vector3>,
-    ways: Vec<Flight>,
+    ways: Vec<Counted>,
     travel: Vec<f64>,
     touches: Vec<Touch>,
     /// Forces between surfaces in touch. Shape: `[body]`.
@@ -71,7 +71,7 @@ struct Conceded {
 }
 
 impl Scheme for Robust {
-    fn of(scene: &Scene, particles: &[Particle], _step: f64) -> Self {
+    fn of(scene: &Scene, particles: &[Particle], step: f64) -> Self {
         let springs = SpringDamper::all(scene);
         let phases = Phases::of(scene, crate::engine::spec::DragRule::Exponential);
         Self {
@@ -86,7 +86,7 @@ impl Scheme for Robust {
             wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
-            work: Work::default(),
+            work: Work::of(particles.len(), scene.duration / step),
             conceded: Conceded::default(),
         }
     }
@@ -168,8 +168,14 @@ impl Robust {
             self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
+            let turned_back = self.conceded.turned_back;
             length = self.press_on(phases, particles, dt, length);
-            let next = self.first(phases, particles, length, dt);
+            // Bodies that turned back did not move, and meet nothing.
+            let next = if self.conceded.turned_back == turned_back {
+                self.first(phases, particles, length, dt)
+            } else {
+                None
+            };
             self.unload(particles);
             let Some(next) = next else {
                 self.book_motion(phases, particles, length, observer);
@@ -181,6 +187,7 @@ impl Robust {
             self.unload(particles);
             self.book_motion(phases, particles, went, observer);
             left = (left - went).max(0.0);
+            self.work.charge_event(went, left);
             self.meet(phases, particles, dt, next, left, observer);
         }
         self.work.taken
@@ -233,11 +240,16 @@ impl Robust {
             return f64::INFINITY;
         }
         let wanted = self.limits.length(phases, particles);
-        let shortest = self.work.shortest(dt);
+        let mut shortest = self.work.shortest(dt);
+        if self.work.cannot_pay(self.limits.springs, dt) {
+            // They ask for the same all along: nothing is won by less than what can be paid.
+            shortest = dt;
+        }
         if wanted >= shortest {
             return wanted;
         }
         self.conceded.long_steps += 1;
+        self.work.charge_long_step();
         shortest
     }
 
@@ -289,7 +301,7 @@ impl Robust {
         if let EventKind::Rest { body } = next.kind {
             stop(&mut particles[body], body, left, observer);
         }
-        if self.work.bounces_no_more(particles.len()) {
+        if self.work.bounces_no_more() {
             self.conceded.cut_short += 1;
             for touch in &mut self.touches {
                 touch.restitution = 0.0;
@@ -302,7 +314,7 @@ impl Robust {
             dt,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
-        self.work.impacts += settled.rounds;
+        self.work.charge_rounds(settled.rounds);
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 

@@ -141,11 +141,11 @@ impl Robust {
             particles.clone_from_slice(&self.start);
             shorter *= 0.5;
         }
-        // Nothing that keeps the energy was found: the bodies stay and go back the way they came,
-        // relative to their centre of mass, which keeps energy and momentum.
+        // Nothing that keeps the energy was found: the bodies go back the way they came, relative
+        // to their centre of mass, which keeps energy and momentum.
         self.conceded.turned_back += 1;
         self.work.charge_failure();
-        turn_back(particles);
+        turn_back(phases, particles, length);
         length
     }
 
@@ -202,12 +202,17 @@ fn larger(most: f64, value: f64) -> f64 {
     }
 }
 
-/// Turns velocities back, relative to that of the centre of mass.
-fn turn_back(particles: &mut [Particle]) {
+/// Turns velocities back, relative to that of the centre of mass, which goes on over the step
+/// where nothing from outside is in its way.
+fn turn_back(phases: &Phases, particles: &mut [Particle], length: f64) {
     let mass: f64 = particles.iter().map(|p| p.mass).sum();
     let momentum: Vector3 = particles.iter().map(|p| p.velocity * p.mass).sum();
+    let mean = momentum / mass;
+    let is_free = phases.cushions.is_none() && phases.gravity.is_none() && phases.decay.is_none();
+    let moved = mean * if is_free { length } else { 0.0 };
     for particle in particles {
-        particle.velocity = momentum * (2.0 / mass) - particle.velocity;
+        particle.velocity = mean * 2.0 - particle.velocity;
+        particle.position += moved;
     }
 }
 
