@@ -26,7 +26,7 @@ use super::phases::Phases;
 use super::scheme::Scheme;
 use super::sweep::stop;
 use super::{Particle, books};
-use crate::physics::{SpringDamper, Vector3};
+use crate::physics::Vector3;
 use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
 use crate::scene::Scene;
 use flow::Flow;
@@ -71,12 +71,12 @@ struct Conceded {
 }
 
 impl Scheme for Robust {
-    fn of(scene: &Scene, particles: &[Particle], step: f64) -> Self {
-        let springs = SpringDamper::all(scene);
-        let phases = Phases::of(scene, crate::engine::spec::DragRule::Exponential);
+    fn of(scene: &Scene, phases: &Phases, particles: &[Particle], step: f64) -> Self {
+        let limits = Limits::of(phases, particles);
+        let steps = scene.duration / step;
         Self {
-            flow: Flow::of(scene, &springs),
-            limits: Limits::of(&phases, particles),
+            flow: Flow::of(scene, &phases.springs),
+            limits,
             start: Vec::new(),
             before: Vec::new(),
             ways: Vec::new(),
@@ -86,7 +86,7 @@ impl Scheme for Robust {
             wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
-            work: Work::of(particles.len(), scene.duration / step),
+            work: Work::of(particles.len(), steps, !limits.are_absent),
             conceded: Conceded::default(),
         }
     }
@@ -140,11 +140,7 @@ impl Robust {
         dt: f64,
         observer: &mut O,
     ) -> Taken {
-        let before = if O::BOOKS {
-            particles.to_vec()
-        } else {
-            Vec::new()
-        };
+        let before = books::kept::<O>(particles);
         self.flow.coast(particles, dt);
         books::motion(phases, &before, particles, dt, observer);
         Taken::default()
@@ -269,16 +265,9 @@ impl Robust {
             .iter()
             .any(|touch| touch.gap < -4.0 * touch.near)
         {
-            let potential = |particles: &[Particle]| {
-                if O::BOOKS {
-                    books::potential_energy(phases, particles)
-                } else {
-                    0.0
-                }
-            };
-            let before = potential(particles);
-            self.jammed = !overlap::separate(phases, particles);
-            books::push_out(observer, before, potential(particles));
+            books::pushing_out(phases, particles, observer, |particles, _| {
+                self.jammed = !overlap::separate(phases, particles);
+            });
             self.conceded.jammed += u64::from(self.jammed);
         }
     }

@@ -22,6 +22,9 @@ const LOOKS: u64 = 64;
 /// digits of pi: 314159 impacts of two bodies and a wall.
 const IMPACTS: u64 = 2_000;
 const IMPACTS_SHARED: u64 = 400_000;
+/// Motions that an impact takes, about, where forces depend on places: its time is found in rounds
+/// of rounds.
+const MOTIONS_AN_IMPACT: u64 = 50;
 /// Events at one instant after which the next substep is taken blindly: they change nothing.
 const STANDING_MAX: u64 = 100;
 /// So many events are timed together …
@@ -33,6 +36,8 @@ const ENDLESS: f64 = 1e10;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Work {
     bodies: u64,
+    /// Impacts past which nothing bounces any more.
+    most: u64,
     /// Motions that a step is allowed.
     motions_a_step: u64,
     /// What the present step took.
@@ -48,16 +53,20 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// For so many bodies over so many steps.
-    pub(super) fn of(bodies: usize, steps: f64) -> Self {
+    /// For so many bodies over so many steps; whether forces depend on places.
+    pub(super) fn of(bodies: usize, steps: f64, forced: bool) -> Self {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "rounded down, and saturated, as it may be"
         )]
         let steps = steps.max(1.0) as u64;
+        let bodies = (bodies as u64).max(1);
+        let pairs = pairs(bodies).max(1);
+        let shared = IMPACTS_SHARED / pairs.saturating_mul(pairs);
         Self {
-            bodies: (bodies as u64).max(1),
+            bodies,
+            most: IMPACTS + shared / if forced { MOTIONS_AN_IMPACT } else { 1 },
             motions_a_step: MOTIONS_A_STEP.max(MOTIONS_A_RUN / steps),
             ..Self::default()
         }
@@ -102,7 +111,7 @@ impl Work {
             #[allow(clippy::cast_precision_loss, reason = "a thousand")]
             let needed = left / self.paced.1 * PACED as f64;
             if needed > ENDLESS {
-                self.impacts = self.impacts.max(self.most() + 1);
+                self.impacts = self.impacts.max(self.most + 1);
             }
             self.paced = (0, 0.0);
         }
@@ -127,13 +136,13 @@ impl Work {
 
     /// Whether so many impacts happened that restitution is given up.
     pub(super) fn bounces_no_more(&self) -> bool {
-        self.impacts > self.most()
+        self.impacts > self.most
     }
 
     /// Whether impacts went on without restitution for as long again: nothing is looked for until
     /// the next step.
     pub(super) fn meets_no_more(&self) -> bool {
-        self.impacts > 2 * self.most()
+        self.impacts > 2 * self.most
     }
 
     /// Whether events follow each other without time going on; asked once, it starts anew.
@@ -145,11 +154,6 @@ impl Work {
         self.impacts += STANDING_MAX;
         true
     }
-
-    fn most(&self) -> u64 {
-        let pairs = pairs(self.bodies).max(1);
-        IMPACTS + IMPACTS_SHARED / pairs.saturating_mul(pairs)
-    }
 }
 
 #[cfg(test)]
@@ -159,7 +163,7 @@ mod tests {
     /// 1e-9 doubled thirty times is a whole step.
     #[test]
     fn an_overdrawn_allowance_makes_steps_longer_and_is_paid_back() {
-        let mut work = Work::of(2, 1e9);
+        let mut work = Work::of(2, 1e9, false);
         assert_eq!(work.shortest(2.0), 2e-9);
         for _ in 0..30 {
             work.charge_failure();
