@@ -11,6 +11,7 @@ mod clear;
 mod flow;
 mod limits;
 mod mean_force;
+mod neighbours;
 mod overlap;
 pub(super) mod plan;
 mod press;
@@ -31,6 +32,7 @@ use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
 use crate::scene::Scene;
 use flow::Flow;
 use limits::Limits;
+use neighbours::Neighbours;
 use search::{Counted, Next};
 use together::Instant;
 use touch::{Touch, touching};
@@ -49,6 +51,7 @@ pub struct Robust {
     ways: Vec<Counted>,
     travel: Vec<f64>,
     touches: Vec<Touch>,
+    neighbours: Neighbours,
     /// Forces between surfaces in touch. Shape: `[body]`.
     pushes: Vec<Vector3>,
     /// Those of walls, summed.
@@ -82,6 +85,7 @@ impl Scheme for Robust {
             ways: Vec::new(),
             travel: Vec::new(),
             touches: Vec::new(),
+            neighbours: Neighbours::default(),
             pushes: vec![Vector3::zeros(); particles.len()],
             wall_push: Vector3::zeros(),
             clear: 0.0,
@@ -160,7 +164,7 @@ impl Robust {
         while left > 0.0 {
             let wanted = self.wanted(phases, particles, dt);
             let mut length = if wanted < left { wanted } else { left };
-            touching(phases, particles, &mut self.touches);
+            touching(phases, particles, &mut self.neighbours, &mut self.touches);
             self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
@@ -259,7 +263,7 @@ impl Robust {
         if self.jammed || (phases.contact.is_none() && phases.cushions.is_none()) {
             return;
         }
-        touching(phases, particles, &mut self.touches);
+        touching(phases, particles, &mut self.neighbours, &mut self.touches);
         if self
             .touches
             .iter()
@@ -283,7 +287,7 @@ impl Robust {
         left: f64,
         observer: &mut impl Observer,
     ) {
-        touching(phases, particles, &mut self.touches);
+        touching(phases, particles, &mut self.neighbours, &mut self.touches);
         if self.touches.iter().all(|touch| touch.kind != next.kind) {
             self.touches.extend(Touch::of(next.kind, phases, particles));
         }

@@ -1,7 +1,7 @@
 //! Motion over a step, with the pushes of surfaces that stay in touch.
 
 use super::flow::Flow;
-use super::together::coupling;
+use super::together::{coupling, square};
 use super::touch::Touch;
 use super::{Robust, mean_force};
 use crate::engine::impulse::Particle;
@@ -104,18 +104,16 @@ impl Robust {
                 return round > 0;
             }
             let (flow, start) = (&self.flow, &self.start);
-            let entry = |i: usize, j: usize| pressing(&ends[i], &ends[j], flow, start);
-            let row = |i: usize| {
-                (0..sizes.len())
-                    .map(|j| entry(i, j) * sizes[j])
-                    .sum::<f64>()
-            };
+            let matrix = square(&ends, |one, other| pressing(one, other, flow, start));
+            let rows = matrix.chunks_exact(ends.len());
             let free: Vec<f64> = changes
                 .iter()
-                .enumerate()
-                .map(|(i, g)| g - row(i))
+                .zip(rows)
+                .map(|(g, row)| g - row.iter().zip(&sizes).map(|(b, l)| b * l).sum::<f64>())
                 .collect();
-            sizes = pushes(&entry, &free, &vec![true; free.len()]);
+            let guess: Vec<bool> = sizes.iter().map(|l| round == 0 || *l > 0.0).collect();
+            let entry = |i: usize, j: usize| matrix[i * ends.len() + j];
+            sizes = pushes(&entry, &free, &guess);
             self.release();
             for (touch, size) in ends.iter().zip(&sizes) {
                 if touch.b.is_none() {

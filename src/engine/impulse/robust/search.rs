@@ -6,7 +6,6 @@ use super::flow::Flight;
 use super::touch::Touch;
 use super::{INSTANT, Robust};
 use crate::engine::impulse::Particle;
-use crate::engine::impulse::handling::pairs;
 use crate::engine::impulse::meeting::{Along, contact, cushion, slowed};
 use crate::engine::impulse::path::Way;
 use crate::engine::impulse::phases::Phases;
@@ -108,16 +107,18 @@ impl Robust {
             first.map_or(length, |first| first.time)
         };
         if phases.contact.is_some() {
-            self.work.taken.pairs += pairs(self.ways.len() as u64);
-            for a in 0..self.ways.len() {
-                for b in a + 1..self.ways.len() {
-                    let kind = EventKind::Contact { a, b };
-                    if resting.is_empty() || !resting.contains(&kind) {
-                        let pair = [a, b].map(|body| self.along(body));
-                        until = offer(contact(&pair, until, instant), kind);
-                    }
+            let travel = self.travel.iter().copied().fold(0.0, f64::max);
+            let mut neighbours = std::mem::take(&mut self.neighbours);
+            let near = neighbours.within(&self.start, 2.0 * travel);
+            self.work.taken.pairs += near.len() as u64;
+            for [a, b] in near {
+                let kind = EventKind::Contact { a: *a, b: *b };
+                if resting.is_empty() || !resting.contains(&kind) {
+                    let pair = [*a, *b].map(|body| self.along(body));
+                    until = offer(contact(&pair, until, instant), kind);
                 }
             }
+            self.neighbours = neighbours;
         }
         if let Some(cushions) = &phases.cushions {
             let half = cushions.half_extents();

@@ -3,6 +3,7 @@
 use super::super::Particle;
 use super::super::contacts::line_of_action;
 use super::super::phases::Phases;
+use super::neighbours::Neighbours;
 use crate::physics::Vector3;
 use crate::recording::{EventKind, Wall};
 
@@ -147,6 +148,11 @@ impl Touch {
         self.gap <= self.near
     }
 
+    pub(super) fn shares_a_body(&self, other: &Self) -> bool {
+        let has = |body: usize| other.a == body || other.b == Some(body);
+        has(self.a) || self.b.is_some_and(has)
+    }
+
     /// Body and direction of a push on each side.
     pub(super) fn arms(&self) -> impl Iterator<Item = (usize, Vector3)> {
         let other = self.b.map(|b| (b, -self.normal));
@@ -159,21 +165,28 @@ fn near(radius: f64, far: f64) -> f64 {
 }
 
 /// Every touching pair and wall, in the model's order; no matter how they move.
-pub(super) fn touching(phases: &Phases, particles: &[Particle], into: &mut Vec<Touch>) {
+pub(super) fn touching(
+    phases: &Phases,
+    particles: &[Particle],
+    neighbours: &mut Neighbours,
+    into: &mut Vec<Touch>,
+) {
     into.clear();
     let mut offer = |kind| {
         let touch = Touch::of(kind, phases, particles);
         into.extend(touch.filter(Touch::touches));
     };
     if phases.contact.is_some() {
-        for a in 0..particles.len() {
-            for b in a + 1..particles.len() {
-                let reach = particles[a].radius + particles[b].radius;
-                let squared = (particles[a].position - particles[b].position).norm_squared();
-                // A hair more, for what counts as near; squares beyond doubles touch nothing.
-                if squared <= reach * reach * 1.000_001 + far_squared(&particles[a]) {
-                    offer(EventKind::Contact { a, b });
-                }
+        // More than what counts as near.
+        let room = |p: &Particle| 1e-6 * p.radius + 64.0 * f64::EPSILON * p.position.amax();
+        let room = particles.iter().map(room).fold(0.0_f64, f64::max);
+        for [a, b] in neighbours.within(particles, 2.0 * room) {
+            let (one, other) = (&particles[*a], &particles[*b]);
+            let reach = one.radius + other.radius;
+            let squared = (one.position - other.position).norm_squared();
+            // A hair more, for what counts as near; squares beyond doubles touch nothing.
+            if squared <= reach * reach * 1.000_001 + far_squared(one) {
+                offer(EventKind::Contact { a: *a, b: *b });
             }
         }
     }
