@@ -71,6 +71,7 @@ struct Conceded {
     turned_back: u64,
     cut_short: u64,
     jammed: u64,
+    loose: u64,
 }
 
 impl Scheme for Robust {
@@ -121,12 +122,14 @@ impl Scheme for Robust {
             turned_back,
             cut_short,
             jammed,
+            loose,
         } = self.conceded;
         let counts = [
             (ConcessionKind::LongStep, long_steps),
             (ConcessionKind::TurnedBack, turned_back),
             (ConcessionKind::CutShort, cut_short),
             (ConcessionKind::Jammed, jammed),
+            (ConcessionKind::Loose, loose),
         ];
         let made = counts.into_iter().filter(|(_, count)| *count > 0);
         made.map(|(kind, count)| Concession { kind, count })
@@ -240,17 +243,23 @@ impl Robust {
             return f64::INFINITY;
         }
         let wanted = self.limits.length(phases, particles);
-        let mut shortest = self.work.shortest(dt);
-        if self.work.cannot_pay(self.limits.springs, dt) {
-            // They ask for the same all along: nothing is won by less than what can be paid.
-            shortest = dt;
-        }
+        let shortest = self.shortest(dt);
         if wanted >= shortest {
             return wanted;
         }
         self.conceded.long_steps += 1;
         self.work.charge_long_step();
         shortest
+    }
+
+    /// The shortest substep that the work allowed pays.
+    fn shortest(&self, dt: f64) -> f64 {
+        // Springs ask for the same all along: where it cannot be paid, nothing is won by less.
+        if self.work.cannot_pay(self.limits.springs, dt) {
+            dt
+        } else {
+            self.work.shortest(dt)
+        }
     }
 
     /// Moves overlapping surfaces apart, unless there is no room for that.

@@ -176,4 +176,20 @@ mod tests {
         }
         assert_eq!(work.shortest(2.0), 2e-9);
     }
+
+    /// Events without time going on end after a hundred, those with it go on.
+    #[test]
+    fn events_that_stand_still_are_found_once() {
+        let mut work = Work::of(2, 100.0, false);
+        for _ in 0..1000 {
+            work.charge_event(1e-3, 1.0);
+            assert!(!work.stands_still());
+        }
+        let stood = (0..=STANDING_MAX).filter(|_| {
+            work.charge_event(0.0, 1.0);
+            work.stands_still()
+        });
+        assert_eq!(stood.count(), 1);
+        assert!(!work.stands_still());
+    }
 }
