@@ -25,6 +25,9 @@ pub enum ConcessionKind {
     CutShort,
     /// Spheres overlap that there is no room for.
     Jammed,
+    /// No pushes were found that keep surfaces in touch: they part or sink in by more than what
+    /// counts as touching.
+    Loose,
 }
 
 impl fmt::Display for Concession {
@@ -34,6 +37,7 @@ impl fmt::Display for Concession {
             ConcessionKind::TurnedBack => "steps whose forces lead nowhere, turned back",
             ConcessionKind::CutShort => "instants of endless impacts cut short",
             ConcessionKind::Jammed => "overlaps that there is no room to resolve",
+            ConcessionKind::Loose => "steps in which surfaces in touch were not kept so",
         };
         write!(f, "{} {what}", self.count)
     }

@@ -142,6 +142,7 @@ fn shares(engine: &str) -> [u32; 2] {
         "exact-drag" | "verlet" | "swept" => [100, 44],
         "swept-4" => [100, 35],
         "adaptive" => [100, 30],
+        "robust" => [100, 60],
         "rapier" | "rapier-f64" | "rapier-tuned" => [32, 30],
         "rapier-matched" => [32, 22],
         "exact" | "exact-fast" => [9, 1],
@@ -172,12 +173,7 @@ fn run(scene: &Scene, spec: &EngineSpec, dt: f64, kept: &mut Kept) -> Result<(),
 #[test]
 fn no_engine_panics_or_records_a_nan() {
     let built = engines().into_iter().filter(EngineSpec::is_built);
-    // `robust` bounds its work, but not yet so tightly that hundreds of these scenes pass in
-    // seconds; `tests/it/robust.rs` holds it to hard scenes by name.
-    let specs: Vec<_> = built
-        .filter(|spec| !spec.chooses_its_steps())
-        .map(in_short)
-        .collect();
+    let specs: Vec<_> = built.map(in_short).collect();
     let kept = RefCell::new(vec![Kept::default(); specs.len()]);
     let mut runner = TestRunner::new(ProptestConfig {
         cases: CASES,

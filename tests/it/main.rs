@@ -26,6 +26,7 @@ mod plan;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod robust;
+mod robust_matrix;
 mod scenes;
 mod stability;
 mod studies;

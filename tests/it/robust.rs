@@ -537,3 +537,72 @@ fn a_cluster_collapses_without_gaining_energy_or_momentum() {
         assert!(deepest < 1e-9, "{deepest:e}");
     }
 }
+
+/// A ball between two walls, so fast that it hits them so often in a second.
+fn rattle(speed: f64) -> Scene {
+    let mut effects = floor(1.0, 1.0);
+    effects.gravity = None;
+    let bodies = vec![body("a", 1.0, 9.5, [0.0; 3], [speed, 0.0, 0.0])];
+    scene(1.0, 1.0, bodies, effects)
+}
+
+/// Impacts are counted, and past their allowance nothing bounces any more: five million of them
+/// end after some hundred thousand, and what would never end does so after a thousand.
+#[test]
+fn endless_impacts_are_cut_short_and_said_to_be() {
+    for (speed, most) in [(5e6, 500_000), (1e15, 2_000)] {
+        let recording = robust(&rattle(speed), 1.0);
+        let found = recording.events.counts().cushions;
+        assert!(found < most, "{speed:e}: {found}");
+        let kinds: Vec<_> = recording.concessions.iter().map(|it| it.kind).collect();
+        assert_eq!(kinds, [ConcessionKind::CutShort], "{speed:e}");
+    }
+    // 1000 in a second are no concession.
+    let recording = robust(&rattle(1000.0), 1.0);
+    assert_eq!(recording.events.counts().cushions, 1000);
+    assert_eq!(recording.concessions, []);
+}
+
+/// A spring that no run can pay: its ends turn back relative to their centre of mass, which goes
+/// on as if there were none; energy and momentum stay, and it costs next to nothing.
+#[test]
+fn a_spring_beyond_all_work_keeps_energy_and_the_centre_of_mass() {
+    let mut scene = oscillator(1e30, 0.0, 1.0);
+    for body in &mut scene.bodies {
+        body.velocity[2] += 1.0;
+    }
+    let recording = robust(&scene, 0.01);
+    let [gained, moved] = gains(&scene, &recording);
+    assert!(gained < 1e-9 && moved < 1e-12, "{gained:e} {moved:e}");
+    let measured = metrics(&scene, &recording);
+    let last = measured.last().unwrap();
+    let due = measured[0].centre_of_mass + measured[0].momentum / 3.0;
+    let off = (last.centre_of_mass - due).norm();
+    // A hundred steps of a few roundings.
+    assert!(off < 1e-12, "{off:e}");
+    let kinds: Vec<_> = recording.concessions.iter().map(|it| it.kind).collect();
+    assert_eq!(
+        kinds,
+        [ConcessionKind::LongStep, ConcessionKind::TurnedBack]
+    );
+    assert!(recording.work.force_evaluations < 10_000);
+}
+
+/// A ball between two walls that press on it from both sides cannot move, however it is pulled:
+/// events that change nothing end.
+#[test]
+fn a_ball_wider_than_its_box_does_not_keep_a_step_from_its_end() {
+    let mut effects = floor(0.3, 0.5);
+    effects.attraction = Some(Attraction {
+        constant: 1.0,
+        softening: 0.1,
+    });
+    let bodies = vec![
+        body("a", 1.0, 0.5, [0.0; 3], [1.0, 1.0, 0.0]),
+        body("b", 1.0, 0.5, [3.0, 0.0, 0.0], [-1.0, -1.0, 0.0]),
+    ];
+    let recording = robust(&scene(0.5, 0.125, bodies, effects), 0.01);
+    let kinds: Vec<_> = recording.concessions.iter().map(|it| it.kind).collect();
+    assert!(kinds.contains(&ConcessionKind::Jammed), "{kinds:?}");
+    assert!(recording.events.counts().cushions < 100_000);
+}

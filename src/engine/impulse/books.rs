@@ -94,8 +94,32 @@ pub(super) fn motion<O: Observer>(
     observer.book(Account::Integrator, entry);
 }
 
-/// Books what a phase that only moves bodies did to the potential energy.
-pub(super) fn push_out<O: Observer>(observer: &mut O, before: f64, after: f64) {
+/// The states before a motion, for whoever keeps books.
+#[inline]
+pub(super) fn kept<O: Observer>(particles: &[Particle]) -> Vec<Particle> {
+    if O::BOOKS {
+        particles.to_vec()
+    } else {
+        Vec::new()
+    }
+}
+
+/// Lets bodies be pushed out of each other, and books what that does to the potential energy:
+/// impulses leave it alone.
+#[inline]
+pub(super) fn pushing_out<O: Observer>(
+    phases: &Phases,
+    particles: &mut [Particle],
+    observer: &mut O,
+    push: impl FnOnce(&mut [Particle], &mut O),
+) {
+    if !O::BOOKS {
+        push(particles, observer);
+        return;
+    }
+    let before = potential_energy(phases, particles);
+    push(particles, observer);
+    let after = potential_energy(phases, particles);
     if after != before {
         let entry = Entry {
             energy: after - before,
@@ -117,7 +141,7 @@ fn energy(phases: &Phases, particles: &[Particle]) -> f64 {
 }
 
 /// Of attraction, springs and gravity.
-pub(super) fn potential_energy(phases: &Phases, particles: &[Particle]) -> f64 {
+fn potential_energy(phases: &Phases, particles: &[Particle]) -> f64 {
     let mut sum = 0.0;
     if let Some(effect) = phases.attraction {
         for (place, a) in particles.iter().enumerate() {

@@ -41,11 +41,7 @@ impl<const PUSH_OUT: bool> Handling for Overlap<PUSH_OUT> {
         dt: f64,
         observer: &mut O,
     ) -> Taken {
-        let before = if O::BOOKS {
-            particles.to_vec()
-        } else {
-            Vec::new()
-        };
+        let before = books::kept::<O>(particles);
         let passes = motion.advance(phases, particles, dt);
         books::motion(phases, &before, particles, dt, observer);
         phases.settle::<PUSH_OUT, O>(particles, observer);

@@ -113,24 +113,14 @@ impl Phases {
         if let Some(rest) = self.rest {
             forces::rest(particles, rest, observer);
         }
-        // Impulses leave the potential energy alone; what it changes by is pushing out.
-        let potential = |particles: &[Particle]| {
-            if O::BOOKS {
-                books::potential_energy(self, particles)
-            } else {
-                0.0
+        books::pushing_out(self, particles, observer, |particles, observer| {
+            if let Some(cushions) = &self.cushions {
+                cushions::bounce::<PUSH_OUT, O>(particles, cushions, observer);
             }
-        };
-        let before = potential(particles);
-        if let Some(cushions) = &self.cushions {
-            cushions::bounce::<PUSH_OUT, O>(particles, cushions, observer);
-        }
-        if let Some(contact) = self.contact {
-            contacts::collide::<PUSH_OUT, O>(particles, contact, observer);
-        }
-        if O::BOOKS {
-            books::push_out(observer, before, potential(particles));
-        }
+            if let Some(contact) = self.contact {
+                contacts::collide::<PUSH_OUT, O>(particles, contact, observer);
+            }
+        });
     }
 
     /// Forces of one pass: pairs, bodies and springs.

@@ -10,8 +10,8 @@ use crate::scene::Scene;
 
 /// A way to make a step of a scene's phases.
 pub(super) trait Scheme {
-    /// For these particles of a scene at its start, with steps of that length.
-    fn of(scene: &Scene, particles: &[Particle], step: f64) -> Self;
+    /// For these particles of a scene at its start, with its phases and steps of that length.
+    fn of(scene: &Scene, phases: &Phases, particles: &[Particle], step: f64) -> Self;
 
     /// One step of length `dt`.
     fn step(
@@ -42,7 +42,7 @@ pub struct Stepped<M, H> {
 pub type Lecture = Stepped<Euler<false>, Overlap<true>>;
 
 impl<M: Motion + Default, H: Handling + Default> Scheme for Stepped<M, H> {
-    fn of(scene: &Scene, particles: &[Particle], step: f64) -> Self {
+    fn of(scene: &Scene, _phases: &Phases, particles: &[Particle], step: f64) -> Self {
         let mut this = Self::default();
         this.motion.prepare(size(particles), scene.duration, step);
         this

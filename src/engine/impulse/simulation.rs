@@ -38,10 +38,11 @@ impl ImpulseSimulation {
 impl<S: Scheme> ImpulseSimulation<S> {
     pub(super) fn with(scene: &Scene, grid: StepGrid, drag: DragRule) -> Self {
         let particles = particles(scene);
+        let phases = Phases::of(scene, drag);
         Self {
-            scheme: S::of(scene, &particles, grid.step),
+            scheme: S::of(scene, &phases, &particles, grid.step),
             particles,
-            phases: Phases::of(scene, drag),
+            phases,
             grid,
             sample: 0,
             work: Work::default(),

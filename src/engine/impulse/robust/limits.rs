@@ -6,19 +6,19 @@ use super::super::phases::Phases;
 /// Share of the time in which two attracting bodies pass each other or turn round.
 const ENCOUNTER_SHARE: f64 = 0.02;
 /// Phase of the fastest oscillation of the springs, in a step.
-const SPRING_PHASE: f64 = 0.5;
+const SPRING_PHASE: f64 = 0.25;
 
 /// Limits of a scene that do not change.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     /// Of the springs, s.
-    springs: f64,
+    pub(super) springs: f64,
     /// Whether steps need none: no force depends on places.
     pub(super) are_absent: bool,
 }
 
 impl Limits {
-    /// Equation, springs: `h <= 1/2 min max(1/w, kd/k)`, with
+    /// Equation, springs: `h <= 1/4 min max(1/w, kd/k)`, with
     /// `w² = sum k/m_a + sum k/m_b` over the springs at both ends, which bounds the square of any
     /// frequency they take part in. Where the damper is the stronger, the slow return at the rate
     /// k/kd is what a step must resolve.

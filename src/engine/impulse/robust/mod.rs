@@ -11,6 +11,7 @@ mod clear;
 mod flow;
 mod limits;
 mod mean_force;
+mod neighbours;
 mod overlap;
 pub(super) mod plan;
 mod press;
@@ -26,12 +27,13 @@ use super::phases::Phases;
 use super::scheme::Scheme;
 use super::sweep::stop;
 use super::{Particle, books};
-use crate::physics::{SpringDamper, Vector3};
+use crate::physics::Vector3;
 use crate::recording::{Account, Concession, ConcessionKind, Entry, EventKind};
 use crate::scene::Scene;
-use flow::{Flight, Flow};
+use flow::Flow;
 use limits::Limits;
-use search::Next;
+use neighbours::Neighbours;
+use search::{Counted, Next};
 use together::Instant;
 use touch::{Touch, touching};
 use work::Work;
@@ -46,9 +48,10 @@ pub struct Robust {
     limits: Limits,
     start: Vec<Particle>,
     before: Vec<Vector3>,
-    ways: Vec<Flight>,
+    ways: Vec<Counted>,
     travel: Vec<f64>,
     touches: Vec<Touch>,
+    neighbours: Neighbours,
     /// Forces between surfaces in touch. Shape: `[body]`.
     pushes: Vec<Vector3>,
     /// Those of walls, summed.
@@ -68,25 +71,27 @@ struct Conceded {
     turned_back: u64,
     cut_short: u64,
     jammed: u64,
+    loose: u64,
 }
 
 impl Scheme for Robust {
-    fn of(scene: &Scene, particles: &[Particle], _step: f64) -> Self {
-        let springs = SpringDamper::all(scene);
-        let phases = Phases::of(scene, crate::engine::spec::DragRule::Exponential);
+    fn of(scene: &Scene, phases: &Phases, particles: &[Particle], step: f64) -> Self {
+        let limits = Limits::of(phases, particles);
+        let steps = scene.duration / step;
         Self {
-            flow: Flow::of(scene, &springs),
-            limits: Limits::of(&phases, particles),
+            flow: Flow::of(scene, &phases.springs),
+            limits,
             start: Vec::new(),
             before: Vec::new(),
             ways: Vec::new(),
             travel: Vec::new(),
             touches: Vec::new(),
+            neighbours: Neighbours::default(),
             pushes: vec![Vector3::zeros(); particles.len()],
             wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
-            work: Work::default(),
+            work: Work::of(particles.len(), steps, !limits.are_absent),
             conceded: Conceded::default(),
         }
     }
@@ -117,12 +122,14 @@ impl Scheme for Robust {
             turned_back,
             cut_short,
             jammed,
+            loose,
         } = self.conceded;
         let counts = [
             (ConcessionKind::LongStep, long_steps),
             (ConcessionKind::TurnedBack, turned_back),
             (ConcessionKind::CutShort, cut_short),
             (ConcessionKind::Jammed, jammed),
+            (ConcessionKind::Loose, loose),
         ];
         let made = counts.into_iter().filter(|(_, count)| *count > 0);
         made.map(|(kind, count)| Concession { kind, count })
@@ -140,11 +147,7 @@ impl Robust {
         dt: f64,
         observer: &mut O,
     ) -> Taken {
-        let before = if O::BOOKS {
-            particles.to_vec()
-        } else {
-            Vec::new()
-        };
+        let before = books::kept::<O>(particles);
         self.flow.coast(particles, dt);
         books::motion(phases, &before, particles, dt, observer);
         Taken::default()
@@ -164,23 +167,40 @@ impl Robust {
         while left > 0.0 {
             let wanted = self.wanted(phases, particles, dt);
             let mut length = if wanted < left { wanted } else { left };
-            touching(phases, particles, &mut self.touches);
+            touching(phases, particles, &mut self.neighbours, &mut self.touches);
             self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
+            let turned_back = self.conceded.turned_back;
             length = self.press_on(phases, particles, dt, length);
-            let Some(next) = self.first(phases, particles, length, dt) else {
+            // Bodies that turned back did not move, and meet nothing.
+            let next = if self.conceded.turned_back == turned_back {
+                self.first(phases, particles, length, dt)
+            } else {
+                None
+            };
+            self.unload(particles);
+            let Some(next) = next else {
                 self.book_motion(phases, particles, length, observer);
                 left = if length >= left { 0.0 } else { left - length };
                 Self::stop_slow(phases, particles, left, observer);
                 continue;
             };
             let went = self.go_to(phases, particles, dt, next);
+            self.unload(particles);
             self.book_motion(phases, particles, went, observer);
             left = (left - went).max(0.0);
+            self.work.charge_event(went, left);
             self.meet(phases, particles, dt, next, left, observer);
         }
         self.work.taken
+    }
+
+    /// Takes the pushes out of the forces: what is left says how hard bodies are pulled together.
+    fn unload(&self, particles: &mut [Particle]) {
+        for (particle, push) in particles.iter_mut().zip(&self.pushes) {
+            particle.force -= push;
+        }
     }
 
     /// Books a motion from the start of the step, pushes of walls included.
@@ -223,12 +243,23 @@ impl Robust {
             return f64::INFINITY;
         }
         let wanted = self.limits.length(phases, particles);
-        let shortest = self.work.shortest(dt);
+        let shortest = self.shortest(dt);
         if wanted >= shortest {
             return wanted;
         }
         self.conceded.long_steps += 1;
+        self.work.charge_long_step();
         shortest
+    }
+
+    /// The shortest substep that the work allowed pays.
+    fn shortest(&self, dt: f64) -> f64 {
+        // Springs ask for the same all along: where it cannot be paid, nothing is won by less.
+        if self.work.cannot_pay(self.limits.springs, dt) {
+            dt
+        } else {
+            self.work.shortest(dt)
+        }
     }
 
     /// Moves overlapping surfaces apart, unless there is no room for that.
@@ -241,22 +272,15 @@ impl Robust {
         if self.jammed || (phases.contact.is_none() && phases.cushions.is_none()) {
             return;
         }
-        touching(phases, particles, &mut self.touches);
+        touching(phases, particles, &mut self.neighbours, &mut self.touches);
         if self
             .touches
             .iter()
             .any(|touch| touch.gap < -4.0 * touch.near)
         {
-            let potential = |particles: &[Particle]| {
-                if O::BOOKS {
-                    books::potential_energy(phases, particles)
-                } else {
-                    0.0
-                }
-            };
-            let before = potential(particles);
-            self.jammed = !overlap::separate(phases, particles);
-            books::push_out(observer, before, potential(particles));
+            books::pushing_out(phases, particles, observer, |particles, _| {
+                self.jammed = !overlap::separate(phases, particles);
+            });
             self.conceded.jammed += u64::from(self.jammed);
         }
     }
@@ -272,14 +296,14 @@ impl Robust {
         left: f64,
         observer: &mut impl Observer,
     ) {
-        touching(phases, particles, &mut self.touches);
+        touching(phases, particles, &mut self.neighbours, &mut self.touches);
         if self.touches.iter().all(|touch| touch.kind != next.kind) {
             self.touches.extend(Touch::of(next.kind, phases, particles));
         }
         if let EventKind::Rest { body } = next.kind {
             stop(&mut particles[body], body, left, observer);
         }
-        if self.work.bounces_no_more(particles.len()) {
+        if self.work.bounces_no_more() {
             self.conceded.cut_short += 1;
             for touch in &mut self.touches {
                 touch.restitution = 0.0;
@@ -292,7 +316,7 @@ impl Robust {
             dt,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
-        self.work.impacts += settled.rounds;
+        self.work.charge_rounds(settled.rounds);
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 

@@ -6,8 +6,10 @@ use super::super::phases::Phases;
 use crate::physics::Vector3;
 use crate::scene::overlap::{Overlap, overlaps};
 
-/// Rounds of pushing, after which what still overlaps is left so: a box too small for its balls.
-const ROUNDS_MAX: u32 = 5000;
+/// Rounds of pushing, after which what still overlaps is left so: a box too small for its balls …
+const ROUNDS_MAX: usize = 500;
+/// … and so many more for each ball.
+const ROUNDS_A_BALL: usize = 5;
 /// Spheres are moved apart by this share of their reach more than they must, so that the rounds
 /// end.
 const MORE: f64 = 1e-7;
@@ -29,7 +31,7 @@ const MOMENTUM: f64 = 0.9;
 pub(super) fn separate(phases: &Phases, particles: &mut [Particle]) -> bool {
     let mut moves = vec![Vector3::zeros(); particles.len()];
     let mut last = f64::INFINITY;
-    for _ in 0..ROUNDS_MAX {
+    for _ in 0..ROUNDS_MAX + ROUNDS_A_BALL * particles.len() {
         let found = overlapping(phases, particles);
         let size: f64 = found
             .iter()

@@ -1,7 +1,7 @@
 //! Motion over a step, with the pushes of surfaces that stay in touch.
 
 use super::flow::Flow;
-use super::together::coupling;
+use super::together::{coupling, square};
 use super::touch::Touch;
 use super::{Robust, mean_force};
 use crate::engine::impulse::Particle;
@@ -18,6 +18,17 @@ const HALVINGS: u32 = 10;
 /// Surfaces that press and slide may turn by this angle in a step.
 const TURN: f64 = 0.05;
 
+/// What a search for pushes came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pressed {
+    /// None are needed.
+    Nowhere,
+    /// They keep the gaps closed.
+    Found,
+    /// With them the forces found no end of the step.
+    Lost,
+}
+
 impl Robust {
     /// Takes the particles over a step of that length, or a shorter one, with the pushes of what
     /// stays in touch; gives the length taken.
@@ -28,30 +39,45 @@ impl Robust {
         dt: f64,
         length: f64,
     ) -> f64 {
+        let whole = length;
         let mut length = length;
+        let floor = self.shortest(dt);
+        let mut halvings = 0;
         self.release();
         let resting = self.resting(particles, dt);
         loop {
-            length = self.travel(phases, particles, length);
-            if resting.is_empty() || !self.press(phases, particles, &resting, length) {
+            length = self.travel(phases, particles, length, floor);
+            if resting.is_empty() {
                 return length;
             }
-            let turn = resting
-                .iter()
-                .filter(|touch| self.is_pressed(touch))
-                .map(|touch| {
-                    let Some(b) = touch.b else { return 0.0 };
-                    let reach = self.start[touch.a].radius + self.start[b].radius;
-                    (self.start[touch.a].velocity - self.start[b].velocity).norm() / reach
-                });
-            let longest = (TURN / turn.fold(0.0, f64::max)).max(self.work.shortest(dt));
+            let longest = match self.press(phases, particles, &resting, length) {
+                Pressed::Nowhere => return length,
+                Pressed::Found => self.longest_slide(&resting).max(floor),
+                Pressed::Lost if halvings < HALVINGS && length > floor => 0.5 * length,
+                Pressed::Lost => {
+                    self.give_up(phases, particles, whole);
+                    return whole;
+                }
+            };
             if length <= longest * 1.001 {
                 return length;
             }
+            halvings += 1;
             length = longest;
             self.release();
             particles.clone_from_slice(&self.start);
         }
+    }
+
+    /// The time in which surfaces that press and slide turn by as much as they may.
+    fn longest_slide(&self, resting: &[Touch]) -> f64 {
+        let turn = |touch: &Touch| {
+            let Some(b) = touch.b else { return 0.0 };
+            let reach = self.start[touch.a].radius + self.start[b].radius;
+            (self.start[touch.a].velocity - self.start[b].velocity).norm() / reach
+        };
+        let pressed = resting.iter().filter(|touch| self.is_pressed(touch));
+        TURN / pressed.map(turn).fold(0.0, f64::max)
     }
 
     /// Takes all pushes away.
@@ -73,7 +99,7 @@ impl Robust {
     }
 
     /// Finds the pushes that keep the gaps of resting surfaces from shrinking over the step, and
-    /// takes the step with them; whether any are needed.
+    /// takes the step with them.
     ///
     /// Equation: `l >= 0`, change of the gaps `g1 - g0 + B l >= 0`, one of the two zero for each.
     /// The push of a pair acts along its mean separation, as forces between bodies do, and so
@@ -84,9 +110,9 @@ impl Robust {
         particles: &mut [Particle],
         resting: &[Touch],
         length: f64,
-    ) -> bool {
+    ) -> Pressed {
         let mut sizes = vec![0.0; resting.len()];
-        for round in 0..PUSH_ROUNDS {
+        for round in 0..=PUSH_ROUNDS {
             let ends: Vec<Touch> = resting
                 .iter()
                 .map(|touch| touch.mean(phases, &self.start, particles))
@@ -101,21 +127,32 @@ impl Robust {
                 *change < -rounding || (*size > 0.0 && *change > rounding)
             };
             if !resting.iter().zip(&changes).zip(&sizes).any(off) {
-                return round > 0;
+                return if round > 0 {
+                    Pressed::Found
+                } else {
+                    Pressed::Nowhere
+                };
+            }
+            if round == PUSH_ROUNDS {
+                // Gaps that are off by less than what counts as touching stay closed all the same.
+                let opens = |((touch, change), size): ((&Touch, &f64), &f64)| {
+                    *change < -touch.near || (*size > 0.0 && *change > touch.near)
+                };
+                let is_loose = resting.iter().zip(&changes).zip(&sizes).any(opens);
+                self.conceded.loose += u64::from(is_loose);
+                break;
             }
             let (flow, start) = (&self.flow, &self.start);
-            let entry = |i: usize, j: usize| pressing(&ends[i], &ends[j], flow, start);
-            let row = |i: usize| {
-                (0..sizes.len())
-                    .map(|j| entry(i, j) * sizes[j])
-                    .sum::<f64>()
-            };
+            let matrix = square(&ends, |one, other| pressing(one, other, flow, start));
+            let rows = matrix.chunks_exact(ends.len());
             let free: Vec<f64> = changes
                 .iter()
-                .enumerate()
-                .map(|(i, g)| g - row(i))
+                .zip(rows)
+                .map(|(g, row)| g - row.iter().zip(&sizes).map(|(b, l)| b * l).sum::<f64>())
                 .collect();
-            sizes = pushes(&entry, &free, &vec![true; free.len()]);
+            let guess: Vec<bool> = sizes.iter().map(|l| round == 0 || *l > 0.0).collect();
+            let entry = |i: usize, j: usize| matrix[i * ends.len() + j];
+            sizes = pushes(&entry, &free, &guess);
             self.release();
             for (touch, size) in ends.iter().zip(&sizes) {
                 if touch.b.is_none() {
@@ -126,13 +163,22 @@ impl Robust {
                 }
             }
             particles.clone_from_slice(&self.start);
-            self.try_travel(phases, particles, length);
+            if !self.try_travel(phases, particles, length) {
+                return Pressed::Lost;
+            }
         }
-        true
+        Pressed::Found
     }
 
-    /// Takes the particles over a step, a shorter one if the forces find no end; gives its length.
-    fn travel(&mut self, phases: &Phases, particles: &mut [Particle], length: f64) -> f64 {
+    /// Takes the particles over a step, a shorter one if the forces find no end, but not below a
+    /// floor; gives its length.
+    fn travel(
+        &mut self,
+        phases: &Phases,
+        particles: &mut [Particle],
+        length: f64,
+        floor: f64,
+    ) -> f64 {
         let mut shorter = length;
         for _ in 0..HALVINGS {
             if self.try_travel(phases, particles, shorter) {
@@ -140,13 +186,22 @@ impl Robust {
             }
             particles.clone_from_slice(&self.start);
             shorter *= 0.5;
+            if shorter < floor {
+                break;
+            }
         }
-        // Nothing that keeps the energy was found: the bodies stay and go back the way they came,
-        // relative to their centre of mass, which keeps energy and momentum.
+        self.give_up(phases, particles, length);
+        length
+    }
+
+    /// Nothing that keeps the energy was found: the bodies go back the way they came, relative to
+    /// their centre of mass, which keeps energy and momentum.
+    fn give_up(&mut self, phases: &Phases, particles: &mut [Particle], length: f64) {
         self.conceded.turned_back += 1;
         self.work.charge_failure();
-        turn_back(particles);
-        length
+        particles.clone_from_slice(&self.start);
+        self.release();
+        turn_back(phases, particles, length);
     }
 
     /// One attempt; whether the forces found the end of the step.
@@ -202,12 +257,17 @@ fn larger(most: f64, value: f64) -> f64 {
     }
 }
 
-/// Turns velocities back, relative to that of the centre of mass.
-fn turn_back(particles: &mut [Particle]) {
+/// Turns velocities back, relative to that of the centre of mass, which goes on over the step
+/// where nothing from outside is in its way.
+fn turn_back(phases: &Phases, particles: &mut [Particle], length: f64) {
     let mass: f64 = particles.iter().map(|p| p.mass).sum();
     let momentum: Vector3 = particles.iter().map(|p| p.velocity * p.mass).sum();
+    let mean = momentum / mass;
+    let is_free = phases.cushions.is_none() && phases.gravity.is_none() && phases.decay.is_none();
+    let moved = mean * if is_free { length } else { 0.0 };
     for particle in particles {
-        particle.velocity = momentum * (2.0 / mass) - particle.velocity;
+        particle.velocity = mean * 2.0 - particle.velocity;
+        particle.position += moved;
     }
 }
 

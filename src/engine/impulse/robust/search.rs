@@ -1,13 +1,15 @@
 //! What a step meets first, and the way there.
 
+use std::cell::Cell;
+
 use super::flow::Flight;
 use super::touch::Touch;
 use super::{INSTANT, Robust};
 use crate::engine::impulse::Particle;
-use crate::engine::impulse::handling::pairs;
 use crate::engine::impulse::meeting::{Along, contact, cushion, slowed};
 use crate::engine::impulse::path::Way;
 use crate::engine::impulse::phases::Phases;
+use crate::physics::Vector3;
 use crate::recording::{EventKind, Wall};
 
 /// Corrections of the time of an impact under forces that depend on places.
@@ -18,6 +20,38 @@ const REFINEMENTS: u32 = 4;
 pub(super) struct Next {
     pub(super) time: f64,
     pub(super) kind: EventKind,
+}
+
+/// A way that counts how often it is looked at: what a search costs.
+#[derive(Debug, Clone)]
+pub(super) struct Counted {
+    flight: Flight,
+    looks: Cell<u64>,
+}
+
+impl Way for Counted {
+    #[inline]
+    fn start(&self) -> &Vector3 {
+        self.flight.start()
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> (Vector3, Vector3) {
+        self.looks.set(self.looks.get() + 1);
+        self.flight.at(t)
+    }
+
+    fn bend_against(&self, other: &Self) -> f64 {
+        self.flight.bend_against(&other.flight)
+    }
+
+    fn bend_along(&self, axis: usize) -> f64 {
+        self.flight.bend_along(axis)
+    }
+
+    fn travel(&self, time: f64) -> f64 {
+        self.flight.travel(time)
+    }
 }
 
 impl Robust {
@@ -31,12 +65,19 @@ impl Robust {
     ) -> Option<Next> {
         let nothing =
             phases.contact.is_none() && phases.cushions.is_none() && phases.rest.is_none();
-        if nothing || self.work.meets_no_more(particles.len()) {
+        if nothing || self.work.meets_no_more() {
+            return None;
+        }
+        if self.work.stands_still() {
+            self.conceded.cut_short += 1;
             return None;
         }
         self.ways.clear();
         for (body, (start, end)) in self.start.iter().zip(particles).enumerate() {
-            self.ways.push(self.flow.way(body, start, end, length));
+            self.ways.push(Counted {
+                flight: self.flow.way(body, start, end, length),
+                looks: Cell::new(0),
+            });
         }
         self.travel.clear();
         self.travel
@@ -54,24 +95,30 @@ impl Robust {
             .map(|touch| touch.kind)
             .collect();
         let mut first: Option<Next> = None;
+        // Later ones than the first so far are of no interest.
+        let mut until = length;
         let mut offer = |time: Option<f64>, kind: EventKind| {
             if let Some(time) = time
                 && first.is_none_or(|first| time < first.time)
             {
                 first = Some(Next { time, kind });
+                return time;
             }
+            first.map_or(length, |first| first.time)
         };
         if phases.contact.is_some() {
-            self.work.taken.pairs += pairs(self.ways.len() as u64);
-            for a in 0..self.ways.len() {
-                for b in a + 1..self.ways.len() {
-                    let kind = EventKind::Contact { a, b };
-                    if resting.is_empty() || !resting.contains(&kind) {
-                        let pair = [a, b].map(|body| self.along(body));
-                        offer(contact(&pair, length, instant), kind);
-                    }
+            let travel = self.travel.iter().copied().fold(0.0, f64::max);
+            let mut neighbours = std::mem::take(&mut self.neighbours);
+            let near = neighbours.within(&self.start, 2.0 * travel);
+            self.work.taken.pairs += near.len() as u64;
+            for [a, b] in near {
+                let kind = EventKind::Contact { a: *a, b: *b };
+                if resting.is_empty() || !resting.contains(&kind) {
+                    let pair = [*a, *b].map(|body| self.along(body));
+                    until = offer(contact(&pair, until, instant), kind);
                 }
             }
+            self.neighbours = neighbours;
         }
         if let Some(cushions) = &phases.cushions {
             let half = cushions.half_extents();
@@ -79,23 +126,23 @@ impl Robust {
                 for wall in Wall::ALL {
                     let kind = EventKind::Cushion { body, wall };
                     if resting.is_empty() || !resting.contains(&kind) {
-                        offer(
-                            cushion(&self.along(body), wall, half, length, instant),
-                            kind,
-                        );
+                        let met = cushion(&self.along(body), wall, half, until, instant);
+                        until = offer(met, kind);
                     }
                 }
             }
         }
         if let Some(rest) = phases.rest {
             for (body, way) in self.ways.iter().enumerate() {
-                offer(slowed(way, rest.speed, length), EventKind::Rest { body });
+                until = offer(slowed(way, rest.speed, until), EventKind::Rest { body });
             }
         }
+        self.work
+            .charge_looks(self.ways.iter().map(|way| way.looks.get()).sum());
         first
     }
 
-    fn along(&self, body: usize) -> Along<'_, Flight> {
+    fn along(&self, body: usize) -> Along<'_, Counted> {
         Along {
             path: &self.ways[body],
             radius: self.start[body].radius,

@@ -1,7 +1,7 @@
 //! Bounces too low to be seen, ended.
 
 use super::super::Particle;
-use super::together::{account, coupling, work};
+use super::together::{account, coupling, square, work};
 use super::touch::Touch;
 use crate::recording::{Account, Entry};
 
@@ -19,9 +19,7 @@ pub(super) fn bring_to_rest(
 ) {
     let count = touches.len();
     let inverse = |body: usize| 1.0 / particles[body].mass;
-    let matrix: Vec<f64> = (0..count * count)
-        .map(|at| coupling(&touches[at / count], &touches[at % count], &inverse))
-        .collect();
+    let matrix = square(touches, |one, other| coupling(one, other, &inverse));
     let product =
         |vector: &[f64]| -> Vec<f64> { matrix.chunks(count).map(|row| dot(row, vector)).collect() };
     let rates: Vec<f64> = touches.iter().map(|touch| touch.rate(particles)).collect();
@@ -69,6 +67,7 @@ fn add(into: &mut [f64], factor: f64, other: &[f64]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::neighbours::Neighbours;
     use super::super::touch::touching;
     use super::*;
     use crate::engine::impulse::particles;
@@ -89,7 +88,7 @@ mod tests {
         let phases = Phases::of(&scene, DragRule::Exponential);
         let mut all = particles(&scene);
         let mut touches = Vec::new();
-        touching(&phases, &all, &mut touches);
+        touching(&phases, &all, &mut Neighbours::default(), &mut touches);
         assert_eq!(touches.len(), 3);
         let momentum = |all: &[Particle]| all.iter().map(|p| p.velocity * p.mass).sum::<Vector3>();
         let energy = |all: &[Particle]| {

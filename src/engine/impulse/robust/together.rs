@@ -91,7 +91,6 @@ impl Instant<'_> {
         let mut stops = vec![0; self.stopped_len()];
         let mut first = 0.0_f64;
         for round in 0.. {
-            settled.rounds += 1;
             let inverse = self.inverse_masses(&stops);
             let violated: Vec<(Touch, f64)> = self
                 .touches
@@ -105,6 +104,7 @@ impl Instant<'_> {
                 }
                 break;
             }
+            settled.rounds += 1;
             let worst = violated
                 .iter()
                 .fold(0.0_f64, |most, (_, rate)| most.max(-rate));
@@ -176,7 +176,8 @@ impl Instant<'_> {
                 .copied()
                 .unwrap_or(1.0 / particles[body].mass)
         };
-        let entry = |i: usize, j: usize| coupling(&violated[i].0, &violated[j].0, &inverse);
+        let matrix = square(violated, |one, other| coupling(&one.0, &other.0, &inverse));
+        let entry = |i: usize, j: usize| matrix[i * violated.len() + j];
         let rates: Vec<f64> = violated.iter().map(|(_, rate)| *rate).collect();
         let stopping = match rates.as_slice() {
             [rate] => vec![(-rate / entry(0, 0)).max(0.0)],
@@ -259,11 +260,27 @@ fn restitution(touch: &Touch, particles: &[Particle]) -> f64 {
 
 /// Entry of A: what a unit impulse at one touch does to the rate of the other.
 pub(super) fn coupling(one: &Touch, other: &Touch, inverse: &impl Fn(usize) -> f64) -> f64 {
+    if !one.shares_a_body(other) {
+        return 0.0;
+    }
     let shared = one.arms().flat_map(|(body, arm)| {
         let same = other.arms().filter(move |(theirs, _)| *theirs == body);
         same.map(move |(_, theirs)| arm.dot(&theirs) * inverse(body))
     });
     shared.sum()
+}
+
+/// A symmetric matrix over touches, row after row.
+pub(super) fn square<T>(touches: &[T], entry: impl Fn(&T, &T) -> f64) -> Vec<f64> {
+    let count = touches.len();
+    let mut matrix = vec![0.0; count * count];
+    for i in 0..count {
+        for j in i..count {
+            let value = entry(&touches[i], &touches[j]);
+            (matrix[i * count + j], matrix[j * count + i]) = (value, value);
+        }
+    }
+    matrix
 }
 
 /// `(1 + e) l`, made to lose exactly `(1 - e²)/2 l.A l` whatever the rounding of l.

@@ -3,6 +3,7 @@
 use super::super::Particle;
 use super::super::contacts::line_of_action;
 use super::super::phases::Phases;
+use super::neighbours::Neighbours;
 use crate::physics::Vector3;
 use crate::recording::{EventKind, Wall};
 
@@ -10,6 +11,9 @@ use crate::recording::{EventKind, Wall};
 const NEAR: f64 = 1e-10;
 /// … or nearer than so many roundings of the coordinates.
 const ROUNDINGS: f64 = 16.0;
+/// Bounces lower than this share of the smaller radius end, where they lose anyway: a pile of
+/// balls comes to rest, and need not be followed through ever smaller and more frequent bounces.
+const LOW: f64 = 1e-6;
 /// Slower than this share of their speeds, and of what their forces make of them in a step, two
 /// surfaces neither approach nor part.
 const STILL: f64 = 1e-12;
@@ -28,6 +32,8 @@ pub(super) struct Touch {
     pub(super) gap: f64,
     /// Nearer than this they touch.
     pub(super) near: f64,
+    /// Bounces lower than this end.
+    low: f64,
     /// Rounding of the gap.
     rounding: f64,
 }
@@ -49,6 +55,7 @@ impl Touch {
                     restitution: phases.contact?.restitution,
                     gap: distance - (one.radius + other.radius),
                     near: near(one.radius.min(other.radius), far),
+                    low: LOW * one.radius.min(other.radius),
                     rounding: 2.0 * f64::EPSILON * (far + one.radius + other.radius),
                 })
             }
@@ -67,6 +74,7 @@ impl Touch {
                     restitution: cushions.restitution,
                     gap: half - particle.radius - particle.position[axis] * side,
                     near: near(particle.radius, half.max(particle.position.amax())),
+                    low: LOW * particle.radius,
                     rounding: 2.0 * f64::EPSILON * (half.max(particle.position.amax())),
                 })
             }
@@ -100,11 +108,16 @@ impl Touch {
         STILL * (speed + acceleration * dt)
     }
 
-    /// A bounce slower than this would not rise above what counts as touching:
-    /// `u² = 2 a near`.
+    /// A bounce slower than this would not rise above what counts as touching or, where bounces
+    /// lose, above a height that does not show: `u² = 2 a h`.
     pub(super) fn slowest_bounce(&self, particles: &[Particle]) -> f64 {
         let [_, acceleration] = self.sizes(particles);
-        (2.0 * acceleration * self.near).sqrt()
+        let height = if self.restitution < 1.0 {
+            self.near.max(self.low)
+        } else {
+            self.near
+        };
+        (2.0 * acceleration * height).sqrt()
     }
 
     /// The touch at the end of a step, with its normal along the mean separation over the step:
@@ -135,6 +148,11 @@ impl Touch {
         self.gap <= self.near
     }
 
+    pub(super) fn shares_a_body(&self, other: &Self) -> bool {
+        let has = |body: usize| other.a == body || other.b == Some(body);
+        has(self.a) || self.b.is_some_and(has)
+    }
+
     /// Body and direction of a push on each side.
     pub(super) fn arms(&self) -> impl Iterator<Item = (usize, Vector3)> {
         let other = self.b.map(|b| (b, -self.normal));
@@ -147,21 +165,28 @@ fn near(radius: f64, far: f64) -> f64 {
 }
 
 /// Every touching pair and wall, in the model's order; no matter how they move.
-pub(super) fn touching(phases: &Phases, particles: &[Particle], into: &mut Vec<Touch>) {
+pub(super) fn touching(
+    phases: &Phases,
+    particles: &[Particle],
+    neighbours: &mut Neighbours,
+    into: &mut Vec<Touch>,
+) {
     into.clear();
     let mut offer = |kind| {
         let touch = Touch::of(kind, phases, particles);
         into.extend(touch.filter(Touch::touches));
     };
     if phases.contact.is_some() {
-        for a in 0..particles.len() {
-            for b in a + 1..particles.len() {
-                let reach = particles[a].radius + particles[b].radius;
-                let squared = (particles[a].position - particles[b].position).norm_squared();
-                // A hair more, for what counts as near; squares beyond doubles touch nothing.
-                if squared <= reach * reach * 1.000_001 + far_squared(&particles[a]) {
-                    offer(EventKind::Contact { a, b });
-                }
+        // More than what counts as near.
+        let room = |p: &Particle| 1e-6 * p.radius + 64.0 * f64::EPSILON * p.position.amax();
+        let room = particles.iter().map(room).fold(0.0_f64, f64::max);
+        for [a, b] in neighbours.within(particles, 2.0 * room) {
+            let (one, other) = (&particles[*a], &particles[*b]);
+            let reach = one.radius + other.radius;
+            let squared = (one.position - other.position).norm_squared();
+            // A hair more, for what counts as near; squares beyond doubles touch nothing.
+            if squared <= reach * reach * 1.000_001 + far_squared(one) {
+                offer(EventKind::Contact { a: *a, b: *b });
             }
         }
     }

@@ -1,34 +1,90 @@
 //! The work that a run may take, and what gives way when it takes more.
 
-use crate::engine::impulse::handling::Taken;
+use crate::engine::impulse::handling::{Taken, pairs};
 
 /// Motions of all bodies that each step may try; what it tries more is carried over to the next.
 const MOTIONS_A_STEP: u64 = 10_000;
+/// Motions that a run may try in all, where its steps are few.
+const MOTIONS_A_RUN: u64 = 1_000_000;
+/// Motions that a substep takes under forces that depend on places, about.
+const MOTIONS_A_SUBSTEP: f64 = 12.0;
+/// What a substep costs that is longer than the forces ask for: they are inaccurate anyway, and
+/// many of them say little more than a few.
+const LONG_STEP: u64 = 1_000;
 /// Shortest substep as a share of the step, before the work gets too much.
 const SHORTEST: f64 = 1e-9;
-/// Impacts that each step may take without carrying any over.
-const IMPACTS_A_STEP: u64 = 2_000;
-/// Impacts carried over, and a share more for few bodies, past which nothing
-/// bounces any more; the share falls with the square of the bodies, as an impact gets dearer.
-const IMPACTS: u64 = 10_000;
-const IMPACTS_SHARED: u64 = 1_600_000;
+/// Impacts of each body that a step may take without carrying any over.
+const IMPACTS_A_STEP: u64 = 25;
+/// Looks along the ways of each body that an impact may take; more count as another.
+const LOOKS: u64 = 64;
+/// Impacts carried over, and a share more for few bodies, past which nothing bounces any more; the
+/// share falls with the square of the pairs, as an impact gets dearer. The largest is for the
+/// digits of pi: 314159 impacts of two bodies and a wall.
+const IMPACTS: u64 = 2_000;
+const IMPACTS_SHARED: u64 = 400_000;
+/// Motions that an impact takes, about, where forces depend on places: its time is found in rounds
+/// of rounds.
+const MOTIONS_AN_IMPACT: u64 = 50;
+/// Events at one instant after which the next substep is taken blindly: they change nothing.
+const STANDING_MAX: u64 = 100;
+/// So many events are timed together …
+const PACED: u64 = 1_000;
+/// … and where the rest of a step would take more than so many at their pace, they are endless.
+const ENDLESS: f64 = 1e10;
 
 /// Work counted in a run.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Work {
+    bodies: u64,
+    /// Impacts past which nothing bounces any more.
+    most: u64,
+    /// Motions that a step is allowed.
+    motions_a_step: u64,
     /// What the present step took.
     pub(super) taken: Taken,
-    /// Reflections at impacts, less those that steps were allowed.
-    pub(super) impacts: u64,
+    /// Events and reflections at impacts, less those that steps were allowed.
+    impacts: u64,
     /// Motions tried, less those that earlier steps were allowed.
     motions: u64,
+    /// Events since time last went on.
+    standing: u64,
+    /// Events of the step since the pace was taken, and how long they took, s.
+    paced: (u64, f64),
 }
 
 impl Work {
+    /// For so many bodies over so many steps; whether forces depend on places.
+    pub(super) fn of(bodies: usize, steps: f64, forced: bool) -> Self {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rounded down, and saturated, as it may be"
+        )]
+        let steps = steps.max(1.0) as u64;
+        let bodies = (bodies as u64).max(1);
+        let pairs = pairs(bodies).max(1);
+        let shared = IMPACTS_SHARED / pairs.saturating_mul(pairs);
+        Self {
+            bodies,
+            most: IMPACTS + shared / if forced { MOTIONS_AN_IMPACT } else { 1 },
+            motions_a_step: MOTIONS_A_STEP.max(MOTIONS_A_RUN / steps),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn begin_step(&mut self) {
-        self.motions = self.motions.saturating_sub(MOTIONS_A_STEP);
-        self.impacts = self.impacts.saturating_sub(IMPACTS_A_STEP);
+        self.motions = self.motions.saturating_sub(self.motions_a_step);
+        let impacts = IMPACTS_A_STEP * self.bodies;
+        self.impacts = self.impacts.saturating_sub(impacts);
         self.taken = Taken::default();
+        self.paced = (0, 0.0);
+    }
+
+    /// Whether substeps of that length are more than all steps can pay.
+    pub(super) fn cannot_pay(&self, substep: f64, step: f64) -> bool {
+        #[allow(clippy::cast_precision_loss, reason = "some millions")]
+        let affordable = self.motions_a_step as f64 / MOTIONS_A_SUBSTEP;
+        step > affordable * substep
     }
 
     /// A motion of all bodies was tried.
@@ -36,9 +92,39 @@ impl Work {
         self.motions += 1;
     }
 
+    /// A substep is longer than the forces ask for.
+    pub(super) fn charge_long_step(&mut self) {
+        self.motions += LONG_STEP;
+    }
+
     /// A substep that led nowhere costs a whole allowance: where one does, more will.
     pub(super) fn charge_failure(&mut self) {
         self.motions += MOTIONS_A_STEP;
+    }
+
+    /// An event was met after that time, with so much left of the step.
+    pub(super) fn charge_event(&mut self, went: f64, left: f64) {
+        self.standing = if went > 0.0 { 0 } else { self.standing + 1 };
+        self.paced.0 += 1;
+        self.paced.1 += went;
+        if self.paced.0 == PACED {
+            #[allow(clippy::cast_precision_loss, reason = "a thousand")]
+            let needed = left / self.paced.1 * PACED as f64;
+            if needed > ENDLESS {
+                self.impacts = self.impacts.max(self.most + 1);
+            }
+            self.paced = (0, 0.0);
+        }
+    }
+
+    /// What was met took so many rounds of reflections.
+    pub(super) fn charge_rounds(&mut self, rounds: u64) {
+        self.impacts += rounds.max(1);
+    }
+
+    /// A search looked along the ways so often.
+    pub(super) fn charge_looks(&mut self, looks: u64) {
+        self.impacts += looks / (LOOKS * self.bodies);
     }
 
     /// The shortest substep of a step: it doubles with every allowance that is overdrawn.
@@ -49,20 +135,25 @@ impl Work {
     }
 
     /// Whether so many impacts happened that restitution is given up.
-    pub(super) fn bounces_no_more(&self, bodies: usize) -> bool {
-        self.impacts > most(bodies)
+    pub(super) fn bounces_no_more(&self) -> bool {
+        self.impacts > self.most
     }
 
     /// Whether impacts went on without restitution for as long again: nothing is looked for until
     /// the next step.
-    pub(super) fn meets_no_more(&self, bodies: usize) -> bool {
-        self.impacts > 2 * most(bodies)
+    pub(super) fn meets_no_more(&self) -> bool {
+        self.impacts > 2 * self.most
     }
-}
 
-fn most(bodies: usize) -> u64 {
-    let bodies = (bodies as u64).max(1);
-    IMPACTS + IMPACTS_SHARED / (bodies * bodies)
+    /// Whether events follow each other without time going on; asked once, it starts anew.
+    pub(super) fn stands_still(&mut self) -> bool {
+        if self.standing <= STANDING_MAX {
+            return false;
+        }
+        self.standing = 0;
+        self.impacts += STANDING_MAX;
+        true
+    }
 }
 
 #[cfg(test)]
@@ -72,7 +163,7 @@ mod tests {
     /// 1e-9 doubled thirty times is a whole step.
     #[test]
     fn an_overdrawn_allowance_makes_steps_longer_and_is_paid_back() {
-        let mut work = Work::default();
+        let mut work = Work::of(2, 1e9, false);
         assert_eq!(work.shortest(2.0), 2e-9);
         for _ in 0..30 {
             work.charge_failure();
@@ -84,5 +175,21 @@ mod tests {
             work.begin_step();
         }
         assert_eq!(work.shortest(2.0), 2e-9);
+    }
+
+    /// Events without time going on end after a hundred, those with it go on.
+    #[test]
+    fn events_that_stand_still_are_found_once() {
+        let mut work = Work::of(2, 100.0, false);
+        for _ in 0..1000 {
+            work.charge_event(1e-3, 1.0);
+            assert!(!work.stands_still());
+        }
+        let stood = (0..=STANDING_MAX).filter(|_| {
+            work.charge_event(0.0, 1.0);
+            work.stands_still()
+        });
+        assert_eq!(stood.count(), 1);
+        assert!(!work.stands_still());
     }
 }
