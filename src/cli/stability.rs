@@ -16,12 +16,15 @@ use crate::study::stability::{
 /// Work a run may count unless told otherwise: a thousand balls for two thousand steps.
 const BUDGET: u64 = 1_100_000_000;
 
+/// The maps that stand beside the whole matrix.
+const MAPS: [MapKind; 2] = [MapKind::Spring, MapKind::Orbit];
+
 /// The engines of the maps, if they take part; more panels would be too narrow.
 const MAPPED: [&str; 4] = ["lecture", "verlet", "rapier-f64", "robust"];
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Names of hard cases [default: all]
+    /// Names of hard cases [default: all, with maps for springs and orbits]
     cases: Vec<String>,
     /// Engines, separated by commas [default: all but exact, which is exact-fast with certificates]
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
@@ -85,6 +88,7 @@ fn make(
     specs: &[EngineSpec],
     budget: u64,
     folder: &Folder,
+    kinds: &[MapKind],
     quiet: bool,
 ) -> Result<(StabilityStudy, StabilitySummary)> {
     let bar = progress(1, quiet);
@@ -98,10 +102,8 @@ fn make(
         .iter()
         .filter(|spec| MAPPED.contains(&spec.name.as_str()));
     let mapped: Vec<EngineSpec> = mapped.cloned().collect();
-    let kinds = [MapKind::Spring, MapKind::Orbit].into_iter();
-    let maps = kinds
-        .filter(|_| !mapped.is_empty())
-        .map(|kind| stability_map(kind, &mapped));
+    let kinds = kinds.iter().filter(|_| !mapped.is_empty());
+    let maps = kinds.map(|kind| stability_map(*kind, &mapped));
     let maps = maps.collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let summary = write_stability(folder, &study, &maps)?;
@@ -123,7 +125,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let cases = cases(&args.cases, &library)?;
     let folder = Folder::open(&args.out)?;
-    let (study, summary) = make(&cases, &specs, args.budget, &folder, args.quiet)?;
+    // Whoever asks for some cases asks for those.
+    let maps = if args.cases.is_empty() {
+        &MAPS[..]
+    } else {
+        &[]
+    };
+    let (study, summary) = make(&cases, &specs, args.budget, &folder, maps, args.quiet)?;
     if args.quiet {
         return Ok(());
     }
@@ -147,6 +155,6 @@ pub(super) fn beside_report(order: &Order, folder: &Folder) -> Result<()> {
         None => specs(&[])?,
     };
     let cases = cases(&[], &Library::hard())?;
-    make(&cases, &specs, BUDGET, folder, order.quiet)?;
+    make(&cases, &specs, BUDGET, folder, &MAPS, order.quiet)?;
     Ok(())
 }

@@ -167,15 +167,12 @@ fn the_command_leaves_tables_and_a_page() {
         "{page}"
     );
     assert!(page.contains("pi-1: 31"), "{page}");
-    for table in ["springs.csv", "orbits.csv"] {
-        assert!(read(table).lines().count() > 100, "{table}");
-    }
 }
 
 #[test]
 fn what_cannot_be_judged_is_one_line() {
     for (arguments, says) in [
-        (vec!["stability", "wedgy"], "wedge"),
+        (vec!["stability", "wedg"], "wedge"),
         (vec!["stability", "--budget", "0"], "budget"),
         (vec!["stability", "--engine", "rapid"], "rapier"),
         (

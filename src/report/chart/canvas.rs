@@ -183,20 +183,33 @@ impl Canvas<'_> {
 
     /// Title and subtitle, each in at most two lines; returns the row below them.
     pub(super) fn heading(&self, title: &str, subtitle: &str) -> Result<f64, ChartError> {
-        let mut row = MARGIN - 8.0;
-        for (text, px, color) in [(title, TITLE_PX, INK), (subtitle, SMALL_PX, QUIET)] {
-            for line in wrapped(text, px, CANVAS[0] - 2.0 * MARGIN, 2)? {
-                let look = Lettering {
-                    px,
-                    color,
-                    align: Align::Left,
-                };
-                self.text(&line, [MARGIN, row + 0.6 * px], look)?;
-                row += 1.3 * px;
-            }
+        let (lines, below) = heading(title, subtitle)?;
+        for (line, row, px, color) in lines {
+            let look = Lettering {
+                px,
+                color,
+                align: Align::Left,
+            };
+            self.text(&line, [MARGIN, row], look)?;
         }
-        Ok(row + 8.0)
+        Ok(below)
     }
+}
+
+/// The lines of a heading, each with its row, its height and its colour; and the row below them.
+type Heading = (Vec<(String, f64, f64, RGBColor)>, f64);
+
+/// Lays out title and subtitle.
+pub(super) fn heading(title: &str, subtitle: &str) -> Result<Heading, ChartError> {
+    let mut row = MARGIN - 8.0;
+    let mut lines = Vec::new();
+    for (text, px, color) in [(title, TITLE_PX, INK), (subtitle, SMALL_PX, QUIET)] {
+        for line in wrapped(text, px, CANVAS[0] - 2.0 * MARGIN, 2)? {
+            lines.push((line, row + 0.6 * px, px, color));
+            row += 1.3 * px;
+        }
+    }
+    Ok((lines, row + 8.0))
 }
 
 fn rgb(color: RGBColor) -> [u8; 3] {

@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 
 use super::ChartError;
-use super::canvas::{Align, Canvas, Lettering, picture_high};
+use super::canvas::{Align, Canvas, Lettering, heading, picture_high};
 use super::legend::{Entry, Key, Legend};
 use super::polyline::Frame;
 use super::text::{shortened, width};
@@ -14,7 +14,7 @@ const ROW: f64 = 29.0;
 /// Height of the letters of a row's name.
 const NAME_PX: f64 = 22.0;
 /// Height of the letters of a column's name, whose parts stand below each other.
-const HEAD_PX: f64 = 20.0;
+const HEAD_PX: f64 = 18.0;
 /// The names of the rows take at most this.
 const NAMES_MAX: f64 = 300.0;
 /// Between two columns.
@@ -102,9 +102,8 @@ pub fn matrix(figure: &MatrixFigure) -> Result<Vec<u8>, ChartError> {
     let legend = Legend::flow(&[keys.collect()], CANVAS[0] - 2.0 * MARGIN, 3)?;
     let head = 1.15 * HEAD_PX * lines + 10.0;
     let high = count(figure.rows.len()) * ROW;
-    // Title and subtitle take up to two lines each.
-    let heading = 210.0;
-    let total = heading + legend.height + head + high + 3.0 * MARGIN;
+    let (_, below) = heading(&figure.title, &figure.subtitle)?;
+    let total = below + legend.height + head + 8.0 + high + 24.0 + MARGIN;
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -150,7 +150,7 @@ mod tests {
         let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="1440" height="900">
             <rect width="1440" height="900" fill="white"/>
             <text x="100" y="500" font-size="200" font-family="DejaVu Sans">Wm</text></svg>"#;
-        let image = decode(&from_svg(svg, 1.0, &BTreeSet::new()).unwrap());
+        let image = decode(&from_svg(svg, SIZE, 1.0, &BTreeSet::new()).unwrap());
         let dark = image.pixels.iter().filter(|p| p[0] < 64).count();
         assert!(dark > 5_000, "{dark}");
     }

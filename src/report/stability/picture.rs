@@ -42,7 +42,7 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
     ];
     let columns = summary.scores.iter().map(|score| MatrixColumn {
         name: score.engine.clone(),
-        score: format!("{} of {}", score.held, score.run + score.not_run),
+        score: format!("{}/{}", score.held, score.run + score.not_run),
     });
     let row = |(name, _): &(String, String)| MatrixRow {
         name: name.clone(),
@@ -67,6 +67,15 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
     matrix(&figure).map_err(|wrong| unpictured(MATRIX, &wrong))
 }
 
+/// How bad a run of a map is.
+fn tone_of(point: &MapPoint) -> Tone {
+    match (point.is_stable, point.growth) {
+        (true, _) => Tone::Good,
+        (false, Some(_)) => Tone::Bad,
+        (false, None) => Tone::Broken,
+    }
+}
+
 /// A map for springs or orbits.
 ///
 /// # Errors
@@ -74,11 +83,7 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
 pub(super) fn map_png(map: &StabilityMap) -> Result<Vec<u8>> {
     let region = |point: &MapPoint| {
         let [low, high] = map.kind.cell([point.x, point.y]);
-        let tone = match (point.is_stable, point.growth) {
-            (true, _) => Tone::Good,
-            (false, Some(_)) => Tone::Bad,
-            (false, None) => Tone::Broken,
-        };
+        let tone = tone_of(point);
         Region { low, high, tone }
     };
     let panels = map.points.chunk_by(|a, b| a.engine == b.engine);
@@ -115,7 +120,11 @@ pub(super) fn map_png(map: &StabilityMap) -> Result<Vec<u8>> {
         x_label: x_label.to_owned(),
         x_scale,
         y_label: y_label.to_owned(),
-        key: key.map(|(tone, says)| (tone, says.to_owned())).to_vec(),
+        key: key
+            .into_iter()
+            .filter(|(tone, _)| map.points.iter().any(|point| tone_of(point) == *tone))
+            .map(|(tone, says)| (tone, says.to_owned()))
+            .collect(),
         line: limit(map),
         line_label: line_label.to_owned(),
         panels: panels.collect(),

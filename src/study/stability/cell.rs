@@ -8,6 +8,7 @@ use crate::case::Expected;
 use crate::compare::{Metrics, metrics};
 use crate::engine::{EngineKind, EngineSpec, prepare, record_within};
 use crate::error::{Error, Result};
+use crate::physics::BodyState;
 use crate::recording::{Account, Recording, initial_states};
 use crate::scene::Scene;
 use crate::study::breaches::{Breach, breaches};
@@ -195,7 +196,7 @@ fn guilty(scene: &Scene, spec: &EngineSpec, dt: f64, breach: &Breach) -> Result<
     for sample in 1..=scene.sample_count() {
         let halt = simulation.advance_to(sample, None);
         simulation.state_into(&mut states);
-        let is_finite = states.iter().all(|state| state.is_finite());
+        let is_finite = states.iter().all(BodyState::is_finite);
         // Books of a blow-up hold no numbers: those of the sample before it tell.
         if halt.is_some() || !is_finite {
             break;
