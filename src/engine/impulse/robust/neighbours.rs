@@ -35,7 +35,11 @@ impl Neighbours {
         let squared = moved.map(|(particle, place)| (particle.position - place).norm_squared());
         // `max` would pass over NaN.
         let most = squared.fold(0.0_f64, |most, one| {
-            if one > most || one.is_nan() { one } else { most }
+            if one > most || one.is_nan() {
+                one
+            } else {
+                most
+            }
         });
         most.sqrt()
     }
