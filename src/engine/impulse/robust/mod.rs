@@ -4,8 +4,10 @@
 //! between bodies are constant over a step and keep the energy exactly, whatever its length
 //! ([`mean_force`]), and steps are as short as each effect asks for ([`limits`]). Impacts are
 //! found on the way, and all of one instant are solved together ([`together`]). Surfaces that
-//! stay in touch press on each other with forces that are solved together too. Spheres that
-//! overlap at the start are moved apart once ([`overlap`]).
+//! stay in touch press on each other with forces that are solved together too ([`press`]), and
+//! bounces that lose and would lift less than 1e-6 of a radius end. Spheres that overlap at the
+//! start are moved apart once ([`overlap`]). Its work is counted, and bounded ([`work`]): what
+//! cannot be paid is given up, and said to be.
 
 mod clear;
 mod flow;

@@ -55,7 +55,9 @@ pub(in crate::engine::impulse) fn plan(phases: &Phases) -> Vec<Phase> {
     add(
         meets && phases.forces,
         "pushes",
-        "surfaces that stay in touch press, all together, without work".to_owned(),
+        "surfaces that stay in touch press, all together, without work; bounces that lose and lift \
+         less than 1e-6 of a radius end"
+            .to_owned(),
     );
     add(
         true,
