@@ -6,7 +6,9 @@ use carom::engine::{EngineKind, EngineSpec, engines, record};
 use carom::error::Error;
 use carom::scene::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring};
 use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use rayon::prelude::*;
 
 use crate::scenes::{body, scene};
 
@@ -211,4 +213,52 @@ fn no_engine_panics_or_records_a_nan() {
             "{name}: {finished} of {given} to the end, must be {least_finished} %"
         );
     }
+}
+
+/// So many scenes from one seed, spread over the engines in turn.
+const MANY: usize = 20_000;
+
+/// Every scene is the same in every run. Nothing panics, no number that is none is recorded, and
+/// what ends early says how; a hang would be seen by who waits.
+#[test]
+#[ignore = "a minute or two: .ci/run runs it"]
+fn twenty_thousand_hostile_scenes_leave_no_engine_without_an_answer() {
+    let built = engines().into_iter().filter(EngineSpec::is_built);
+    let specs: Vec<_> = built.map(in_short).collect();
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
+    let scenes = prop_oneof![hostile(Reach::Wild), hostile(Reach::Tame)];
+    let input = (scenes, prop_oneof![Just(0.01), Just(1.0)]);
+    let drawn: Vec<(Scene, f64)> = (0..MANY)
+        .map(|_| input.new_tree(&mut runner).unwrap().current())
+        .collect();
+    let kept: Vec<(usize, Kept)> = drawn
+        .par_iter()
+        .enumerate()
+        .map(|(place, (scene, dt))| {
+            let engine = place % specs.len();
+            let mut kept = Kept::default();
+            if let Err(wrong) = run(scene, &specs[engine], *dt, &mut kept) {
+                panic!("{}, scene {place}: {wrong}", specs[engine].name);
+            }
+            (engine, kept)
+        })
+        .collect();
+    let mut tried = 0;
+    for (engine, spec) in specs.iter().enumerate() {
+        let own = kept.iter().filter(|(by, _)| *by == engine);
+        let sum = |count: fn(&Kept) -> u32| own.clone().map(|(_, kept)| count(kept)).sum::<u32>();
+        let [given, recorded, finished] = [
+            sum(|kept| kept.given),
+            sum(|kept| kept.recorded),
+            sum(|kept| kept.finished),
+        ];
+        println!(
+            "{}: {given} scenes, {recorded} recorded, {finished} to the end",
+            spec.name
+        );
+        tried += given;
+    }
+    println!("{tried} hostile scenes tried");
+    assert_eq!(tried as usize, MANY);
 }
