@@ -72,18 +72,7 @@ impl Robust {
             self.conceded.cut_short += 1;
             return None;
         }
-        self.ways.clear();
-        for (body, (start, end)) in self.start.iter().zip(particles).enumerate() {
-            self.ways.push(Counted {
-                flight: self.flow.way(body, start, end, length),
-                looks: Cell::new(0),
-            });
-        }
-        self.travel.clear();
-        self.travel
-            .extend(self.ways.iter().map(|way| way.travel(length)));
-        if !self.travel.iter().all(|travel| travel.is_finite()) {
-            // Numbers beyond those of doubles meet nothing.
+        if !self.find_ways(particles, length) {
             return None;
         }
         let instant = INSTANT * dt;
@@ -140,6 +129,22 @@ impl Robust {
         self.work
             .charge_looks(self.ways.iter().map(|way| way.looks.get()).sum());
         first
+    }
+
+    /// The ways of all bodies from the start of the step to where the particles are; whether they
+    /// are finite. Numbers beyond those of doubles meet nothing.
+    fn find_ways(&mut self, particles: &[Particle], length: f64) -> bool {
+        self.ways.clear();
+        for (body, (start, end)) in self.start.iter().zip(particles).enumerate() {
+            self.ways.push(Counted {
+                flight: self.flow.way(body, start, end, length),
+                looks: Cell::new(0),
+            });
+        }
+        self.travel.clear();
+        self.travel
+            .extend(self.ways.iter().map(|way| way.travel(length)));
+        self.travel.iter().all(|travel| travel.is_finite())
     }
 
     fn along(&self, body: usize) -> Along<'_, Counted> {
