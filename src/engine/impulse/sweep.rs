@@ -16,7 +16,7 @@ use crate::recording::{Account, EventKind, Wall};
 const IMPACTS_A_BODY: usize = 10;
 
 /// Looks at pairs in one step after which the same holds: every impact looks at all pairs anew, so
-/// that the impacts of a crowd in one step would cost its number cubed. A hundred bodies are not
+/// that the impacts of a crowd in one step would cost its number cubed. Ninety bodies are not
 /// bound by this; a thousand have eight impacts in a step.
 const LOOKS_A_STEP: usize = 4_000_000;
 
