@@ -43,7 +43,7 @@ impl Map {
                 "Two balls of 1 and 3 kg on a spring that is stretched by a tenth, 256 steps, for \
                  every stiffness k and damping kd; mu = m_a m_b/(m_a + m_b). The line is the limit \
                  of symplectic Euler, which is the lecture's step: k dt²/mu + 2 kd dt/mu = 4. A run \
-                 is lost if it ends early or its energy passes a thousand times that of the start.",
+                 is lost if it ends early or its energy passes thirty times that of the start.",
             ),
             MapKind::Orbit => (
                 "Orbits against the step",

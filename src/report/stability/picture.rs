@@ -98,7 +98,7 @@ pub(super) fn map_png(map: &StabilityMap) -> Result<Vec<u8>> {
             Scale::Log,
             "damping: 2 kd dt/mu",
             "theory for symplectic Euler: the sum is 4",
-            "energy over 1000 times",
+            "energy over 30 times",
         ),
         MapKind::Orbit => (
             "An orbit against the step",
