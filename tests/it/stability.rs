@@ -132,6 +132,12 @@ fn a_blow_up_is_named_with_its_phase_at_its_first_crossing() {
     assert_eq!(judged.cell.outcome, "EnergyGrew");
     assert_eq!(judged.cell.at_time, Some(0.1));
     assert_eq!(judged.phase.as_deref(), Some("integrator"));
+    // At a tenth of the step it is through all numbers before the first sample, at 0.1 s; the
+    // crossing is found from step to step.
+    let judged = run(&case, &engine("lecture").unwrap(), 0.001);
+    assert_eq!(judged.cell.outcome, "EnergyGrew");
+    assert!(judged.cell.at_time < Some(0.01), "{judged:?}");
+    assert_eq!(judged.phase.as_deref(), Some("integrator"));
 }
 
 /// A budget of work ends a run at a sample, with everything before it kept.

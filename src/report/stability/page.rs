@@ -10,11 +10,16 @@ use crate::study::stability::{MapKind, StabilityMap, StabilityStudy, StabilitySu
 
 const TEMPLATE: &str = include_str!("../../../templates/stability.md");
 
+/// A load above this is more than the study itself with its two threads for the maps.
+const LOAD_MAX: f64 = 2.0;
+
 /// What the template is given.
 #[derive(Serialize)]
 struct Page<'a> {
     summary: &'a StabilitySummary,
     machine: String,
+    /// Whether more ran than this program, which is one by itself.
+    busy: bool,
     budget: u64,
     pictures: bool,
     matrix: &'static str,
@@ -76,6 +81,11 @@ pub(super) fn page(
         Page {
             summary,
             machine: summary.made.machine.describe(),
+            busy: summary
+                .made
+                .machine
+                .load
+                .is_some_and(|load| load > LOAD_MAX),
             budget: study.budget,
             pictures: cfg!(feature = "plots"),
             matrix: MATRIX,

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Expected;
 use crate::compare::{Metrics, metrics};
-use crate::engine::{EngineKind, EngineSpec, prepare, record_within};
+use crate::engine::{EngineKind, EngineSpec, prepare, record, record_within};
 use crate::error::{Error, Result};
 use crate::physics::BodyState;
-use crate::recording::{Account, Recording, initial_states};
+use crate::recording::{Account, Outcome, Recording, initial_states};
 use crate::scene::Scene;
 use crate::study::breaches::{Breach, breaches};
 
@@ -117,8 +117,17 @@ pub fn judge(
     let first = breaches(scene, expected, &recording, &metrics)
         .into_iter()
         .min_by(|a, b| a.time(scene).total_cmp(&b.time(scene)));
+    let fine = match (&first, recording.step) {
+        (Some(Breach::Ended { outcome }), Some(step)) => step_by_step(scene, *outcome, step),
+        _ => None,
+    };
+    let crossing = match &fine {
+        Some(fine) => energy_crossing(fine, expected, spec)?,
+        None => None,
+    };
+    let first = crossing.or(first);
     let phase = match &first {
-        Some(first) => guilty(scene, spec, dt, first)?,
+        Some(first) => guilty(fine.as_ref().unwrap_or(scene), spec, dt, first)?,
         None => None,
     };
     let outcome = first.as_ref().map_or("Finished", Breach::word);
@@ -181,6 +190,28 @@ fn missed(expected: &Expected, recording: &Recording) -> Option<i64> {
     let walls = due.cushions.map(|due| less(due, found.cushions));
     let counted = [exact, least, walls].into_iter().flatten();
     counted.reduce(|sum, missed| sum + missed)
+}
+
+/// The scene up to where numbers ran out, with a sample after every step: between two samples a
+/// blow-up passes all bounds on its way to no number at all.
+fn step_by_step(scene: &Scene, outcome: Outcome, step: f64) -> Option<Scene> {
+    let Outcome::NonFinite { time, .. } = outcome else {
+        return None;
+    };
+    Some(Scene {
+        duration: (time / step).round() * step,
+        sample_every: step,
+        ..scene.clone()
+    })
+}
+
+/// When the energy first passed its bound on the way, if it did.
+fn energy_crossing(fine: &Scene, expected: &Expected, spec: &EngineSpec) -> Result<Option<Breach>> {
+    let recording = record(fine, spec, fine.sample_every)?;
+    let metrics = metrics(fine, &recording);
+    let broken = breaches(fine, expected, &recording, &metrics).into_iter();
+    let mut grew = broken.filter(|breach| matches!(breach, Breach::EnergyGrew(_)));
+    Ok(grew.next())
 }
 
 /// The phase that did most of what a breach complains of, up to its time, by the books of the
