@@ -131,6 +131,9 @@ fn an_unknown_study_is_one_line_that_names_those_there_are() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert_eq!(said, "error: no study is called `price`; there are: cost\n");
+    assert_eq!(
+        said,
+        "error: no study is called `price`; there are: cost, stability\n"
+    );
     assert!(!scratch.path().join("reports").exists());
 }
