@@ -214,28 +214,40 @@ fn excess(
     found
 }
 
+/// (time, rise of the energy above its start as a share of the scale) at every sample.
+pub(super) fn energy_rises<'a>(
+    bound: &EnergyBound,
+    metrics: &'a [Metrics],
+) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+    let start = metrics[0].total_energy();
+    let scale = bound.scale.unwrap_or_else(|| metrics[0].energy_scale());
+    metrics
+        .iter()
+        .map(move |at| (at.time, (at.total_energy() - start) / scale))
+}
+
+/// (time, change of the momentum as a share of the scale) at every sample.
+pub(super) fn momentum_changes<'a>(
+    bound: &MomentumBound,
+    metrics: &'a [Metrics],
+) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+    let start = metrics[0].momentum;
+    let scale = bound.scale.unwrap_or(metrics[0].momentum_scale);
+    metrics
+        .iter()
+        .map(move |at| (at.time, (at.momentum - start).norm() / scale))
+}
+
 fn energy(bound: &EnergyBound, metrics: &[Metrics]) -> impl Iterator<Item = Breach> {
-    let start = &metrics[0];
-    let scale = bound.scale.unwrap_or_else(|| start.energy_scale());
-    let gains = |sign: f64| {
-        metrics.iter().map(move |at| {
-            let gain = (at.total_energy() - start.total_energy()) / scale;
-            (at.time, sign * gain)
-        })
-    };
-    let grew = excess(gains(1.0), |_| bound.gain_max).map(Breach::EnergyGrew);
-    let lost = bound
-        .loss_max
-        .and_then(|loss| excess(gains(-1.0), |_| loss));
+    let rises = energy_rises(bound, metrics);
+    let grew = excess(rises, |_| bound.gain_max).map(Breach::EnergyGrew);
+    let falls = || energy_rises(bound, metrics).map(|(time, rise)| (time, -rise));
+    let lost = bound.loss_max.and_then(|loss| excess(falls(), |_| loss));
     grew.into_iter().chain(lost.map(Breach::EnergyLost))
 }
 
 fn momentum(bound: &MomentumBound, metrics: &[Metrics]) -> Option<Breach> {
-    let start = &metrics[0];
-    let scale = bound.scale.unwrap_or(start.momentum_scale);
-    let changes = metrics
-        .iter()
-        .map(|at| (at.time, (at.momentum - start.momentum).norm() / scale));
+    let changes = momentum_changes(bound, metrics);
     excess(changes, |_| bound.change_max).map(Breach::MomentumOff)
 }
 

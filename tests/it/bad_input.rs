@@ -5,6 +5,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
+use crate::slips::{Slip, assert_named};
+
 const GOOD: &str = r#"name = "two"
 duration = 1.0
 sample_every = 0.25
@@ -72,20 +74,10 @@ fn the_good_scene_is_good() {
     }
 }
 
-/// What to replace in the good scene, by what, the line to be named, and what must be said.
-type Slip = (&'static str, &'static str, usize, &'static str);
-
 fn assert_named_with_their_place(slips: &[Slip]) {
-    for (from, to, line, part) in slips {
-        let text = GOOD.replacen(from, to, 1);
-        assert_ne!(text, GOOD, "{from} is not in the scene");
-        let said = complaint(text.as_bytes(), &[]);
-        assert!(
-            said.contains(&format!("s.toml:{line}:")),
-            "{to}: line {line}, not: {said}"
-        );
-        assert!(said.contains(part), "{to}: `{part}` is missing in: {said}");
-    }
+    assert_named(GOOD, "error: s.toml", slips, |text| {
+        complaint(text.as_bytes(), &[])
+    });
 }
 
 #[test]

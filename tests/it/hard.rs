@@ -11,6 +11,7 @@ use carom::scene::{self, Scene};
 use carom::study::{Breach, breaches};
 
 use crate::scenes::lecture;
+use crate::slips::assert_named;
 
 const LIBRARY: Library = Library::EmbeddedHard;
 
@@ -321,7 +322,7 @@ fn faults_of_an_expectation_are_named_with_their_place() {
         [0.1, 0.01, 0.001],
         "the default ladder"
     );
-    for (from, to, line, part) in [
+    let slips = [
         ("dt = [0.1, 0.01]", "dt = []", 1, "give one step"),
         (
             "dt = [0.1, 0.01]",
@@ -365,17 +366,10 @@ fn faults_of_an_expectation_are_named_with_their_place() {
             26,
             "finite",
         ),
-    ] {
-        let text = EXPECTED.replacen(from, to, 1);
-        assert_ne!(text, EXPECTED, "{from} is not there");
-        let said = parse(&text).unwrap_err().to_string();
-        assert!(
-            said.starts_with(&format!("e.toml:{line}:")),
-            "{to}: line {line}, not {said}"
-        );
-        assert!(said.contains(part), "{to}: `{part}` is missing in: {said}");
-        assert_eq!(said.lines().count(), 1, "{said}");
-    }
+    ];
+    assert_named(EXPECTED, "e.toml", &slips, |text| {
+        parse(text).unwrap_err().to_string()
+    });
 }
 
 #[test]

@@ -28,6 +28,7 @@ mod rapier;
 mod robust;
 mod robust_matrix;
 mod scenes;
+mod slips;
 mod stability;
 mod studies;
 #[cfg(feature = "rapier")]

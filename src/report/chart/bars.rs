@@ -3,7 +3,7 @@
 use super::ChartError;
 use super::axis::{Axis, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
-use super::polyline::Frame;
+use super::polyline::{Frame, count};
 use super::text::{shortened, width};
 use super::theme::{
     CANVAS, FRAME, GRID, INK, LABEL_PX, MARGIN, PAPER, Pen, QUIET, SMALL_PX, color, mix,
@@ -76,7 +76,7 @@ pub fn bars(figure: &BarsFigure) -> Result<Vec<u8>, ChartError> {
             }
             canvas.rule(&frame.outline(), Pen::solid(FRAME, 2.0))?;
         }
-        let look = lettering(LABEL_PX, INK, Align::Center);
+        let look = Lettering::new(LABEL_PX, INK, Align::Center);
         let label = shortened(&figure.x_label, LABEL_PX, CANVAS[0] - 2.0 * MARGIN)?;
         let middle = f64::midpoint(plot.whole.left, plot.whole.right);
         canvas.text(&label, [middle, plot.whole.bottom + 60.0], look)
@@ -91,10 +91,6 @@ struct Plot {
     axis: Axis,
 }
 
-fn lettering(px: f64, color: plotters::style::RGBColor, align: Align) -> Lettering {
-    Lettering { px, color, align }
-}
-
 fn layout(figure: &BarsFigure, top: f64) -> Result<Plot, ChartError> {
     let mut names: f64 = 0.0;
     for (name, _) in &figure.rows {
@@ -107,7 +103,6 @@ fn layout(figure: &BarsFigure, top: f64) -> Result<Plot, ChartError> {
         right: CANVAS[0] - MARGIN,
         bottom: CANVAS[1] - FOOT,
     };
-    let count = |length: usize| (0..length).fold(0.0, |count, _| count + 1.0);
     let groups = f64::max(count(figure.groups.len()), 1.0);
     let each = (whole.width() - (groups - 1.0) * BETWEEN) / groups;
     let high = whole.height() / f64::max(count(figure.rows.len()), 1.0);
@@ -150,7 +145,7 @@ fn draw_names(canvas: &Canvas, figure: &BarsFigure, plot: &Plot) -> Result<(), C
     for ((name, _), row) in figure.rows.iter().zip(&plot.rows) {
         let name = shortened(name, LABEL_PX, NAMES_MAX)?;
         let at = [row.left - 16.0, f64::midpoint(row.top, row.bottom)];
-        canvas.text(&name, at, lettering(LABEL_PX, INK, Align::Right))?;
+        canvas.text(&name, at, Lettering::new(LABEL_PX, INK, Align::Right))?;
     }
     Ok(())
 }
@@ -163,7 +158,7 @@ fn draw_grid(
 ) -> Result<(), ChartError> {
     let name = shortened(&group.name, LABEL_PX, frame.width())?;
     let middle = f64::midpoint(frame.left, frame.right);
-    let look = lettering(LABEL_PX, INK, Align::Center);
+    let look = Lettering::new(LABEL_PX, INK, Align::Center);
     canvas.text(&name, [middle, frame.top - 0.5 * HEADING], look)?;
     for label in &axis.labels {
         let x = frame.x(label.share);
@@ -171,7 +166,7 @@ fn draw_grid(
         let reach = width(&label.text, SMALL_PX)? / 2.0;
         let room = frame.left - BETWEEN / 2.0 + reach..=frame.right + BETWEEN / 2.0 - reach;
         if room.contains(&x) {
-            let look = lettering(SMALL_PX, QUIET, Align::Center);
+            let look = Lettering::new(SMALL_PX, QUIET, Align::Center);
             canvas.text(&label.text, [x, frame.bottom + 22.0], look)?;
         }
     }
@@ -208,7 +203,7 @@ fn draw_bar(
     }
     let text = shortened(text, px, row.width() - 20.0)?;
     let at = [row.left + 12.0, middle];
-    canvas.text(&text, at, lettering(px, ink, Align::Left))
+    canvas.text(&text, at, Lettering::new(px, ink, Align::Left))
 }
 
 #[cfg(test)]

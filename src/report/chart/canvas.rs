@@ -41,6 +41,13 @@ pub(super) struct Lettering {
     pub(super) align: Align,
 }
 
+impl Lettering {
+    /// Letters of that height and colour.
+    pub(super) fn new(px: f64, color: RGBColor, align: Align) -> Self {
+        Self { px, color, align }
+    }
+}
+
 /// A white sheet; every length is in pixels, y runs down.
 pub(super) struct Canvas<'a> {
     area: DrawingArea<SVGBackend<'a>, Shift>,

@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 use super::ChartError;
 use super::canvas::{Align, Canvas, Lettering, heading, picture_high};
 use super::legend::{Entry, Key, Legend};
-use super::polyline::Frame;
+use super::polyline::{Frame, count};
 use super::text::{shortened, width};
 use super::theme::{CANVAS, FRAME, INK, MARGIN, PAPER, Pen, QUIET, color, mix};
 
@@ -128,7 +128,7 @@ pub fn matrix(figure: &MatrixFigure) -> Result<Vec<u8>, ChartError> {
             let top = whole.top + f64::from(place) * ROW;
             let name = shortened(&row.name, NAME_PX, NAMES_MAX)?;
             let at = [whole.left - 14.0, top + ROW / 2.0];
-            canvas.text(&name, at, lettering(NAME_PX, INK, Align::Right))?;
+            canvas.text(&name, at, Lettering::new(NAME_PX, INK, Align::Right))?;
         }
         draw_columns(canvas, figure, &heads, &whole)
     })
@@ -137,14 +137,6 @@ pub fn matrix(figure: &MatrixFigure) -> Result<Vec<u8>, ChartError> {
 /// The parts of a name, each with its hyphen.
 fn parts(name: &str) -> Vec<String> {
     name.split_inclusive('-').map(str::to_owned).collect()
-}
-
-fn lettering(px: f64, color: RGBColor, align: Align) -> Lettering {
-    Lettering { px, color, align }
-}
-
-fn count(length: usize) -> f64 {
-    (0..length).fold(0.0, |count, _| count + 1.0)
 }
 
 fn draw_columns(
@@ -161,7 +153,11 @@ fn draw_columns(
         let mut y = whole.top - 14.0 - 1.15 * HEAD_PX * (count(head.len()) - 1.0);
         for line in head {
             let line = shortened(line, HEAD_PX, each + BETWEEN)?;
-            canvas.text(&line, [middle, y], lettering(HEAD_PX, INK, Align::Center))?;
+            canvas.text(
+                &line,
+                [middle, y],
+                Lettering::new(HEAD_PX, INK, Align::Center),
+            )?;
             y += 1.15 * HEAD_PX;
         }
         for (row, down) in figure.rows.iter().zip(0..) {
@@ -188,7 +184,7 @@ fn draw_columns(
         canvas.rule(&frame.outline(), Pen::solid(FRAME, 1.5))?;
         let score = shortened(&figure.columns[place].score, HEAD_PX, each + BETWEEN)?;
         let at = [middle, whole.bottom + 20.0];
-        canvas.text(&score, at, lettering(HEAD_PX, QUIET, Align::Center))?;
+        canvas.text(&score, at, Lettering::new(HEAD_PX, QUIET, Align::Center))?;
     }
     Ok(())
 }

@@ -1,5 +1,10 @@
 //! Lines as lists of points in pixels: broken at gaps, thinned, clipped, dashed.
 
+/// A number of things, as a length.
+pub(super) fn count(things: usize) -> f64 {
+    (0..things).fold(0.0, |count, _| count + 1.0)
+}
+
 /// A place on the canvas in pixels, x to the right and y down.
 pub(super) type Point = [f64; 2];
 

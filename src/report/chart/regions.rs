@@ -5,7 +5,7 @@ use super::axis::{Axis, Scale, fitting};
 use super::canvas::{Align, Canvas, Lettering, picture};
 use super::legend::{Entry, Key, Legend};
 use super::matrix::Tone;
-use super::polyline::{Frame, Point, clipped, runs};
+use super::polyline::{Frame, Point, clipped, count, runs};
 use super::text::{shortened, width};
 use super::theme::{CANVAS, FRAME, INK, LABEL_PX, MARGIN, PAPER, Pen, QUIET, SMALL_PX};
 
@@ -82,7 +82,7 @@ pub fn regions(figure: &RegionsFigure) -> Result<Vec<u8>, ChartError> {
             bottom: CANVAS[1] - FOOT,
         };
         let axes = axes(figure, &whole)?;
-        let look = lettering(LABEL_PX, Align::Left);
+        let look = Lettering::new(LABEL_PX, INK, Align::Left);
         let label = shortened(&figure.y_label, LABEL_PX, CANVAS[0] - 2.0 * MARGIN)?;
         canvas.text(&label, [MARGIN, top + 22.0], look)?;
         for (panel, frame) in figure.panels.iter().zip(frames(figure, &whole)) {
@@ -102,30 +102,19 @@ pub fn regions(figure: &RegionsFigure) -> Result<Vec<u8>, ChartError> {
             canvas.text(
                 &label.text,
                 at,
-                Lettering {
-                    color: QUIET,
-                    ..lettering(SMALL_PX, Align::Right)
-                },
+                Lettering::new(SMALL_PX, QUIET, Align::Right),
             )?;
         }
         let label = shortened(&figure.x_label, LABEL_PX, whole.width())?;
         let middle = f64::midpoint(whole.left, whole.right);
-        let look = lettering(LABEL_PX, Align::Center);
+        let look = Lettering::new(LABEL_PX, INK, Align::Center);
         canvas.text(&label, [middle, whole.bottom + 66.0], look)
     })
 }
 
-fn lettering(px: f64, align: Align) -> Lettering {
-    Lettering {
-        px,
-        color: INK,
-        align,
-    }
-}
-
 /// The frame of each panel.
 fn frames(figure: &RegionsFigure, whole: &Frame) -> Vec<Frame> {
-    let panels = figure.panels.iter().fold(0.0, |count, _| count + 1.0);
+    let panels = count(figure.panels.len());
     let each = (whole.width() - (panels - 1.0) * BETWEEN) / f64::max(panels, 1.0);
     let mut left = whole.left;
     let frame = |_: &RegionPanel| {
@@ -170,7 +159,7 @@ fn draw_panel(
 ) -> Result<(), ChartError> {
     let middle = f64::midpoint(frame.left, frame.right);
     let name = shortened(&panel.name, LABEL_PX, frame.width())?;
-    let look = lettering(LABEL_PX, Align::Center);
+    let look = Lettering::new(LABEL_PX, INK, Align::Center);
     canvas.text(&name, [middle, frame.top - 0.5 * HEADING], look)?;
     for region in &panel.regions {
         let corners = [region.low, region.high].map(|corner| place(corner, axes, frame));
@@ -192,10 +181,7 @@ fn draw_panel(
         let x = frame.x(label.share);
         let room = frame.left - BETWEEN / 2.0 + reach..=frame.right + BETWEEN / 2.0 - reach;
         if room.contains(&x) {
-            let look = Lettering {
-                color: QUIET,
-                ..lettering(SMALL_PX, Align::Center)
-            };
+            let look = Lettering::new(SMALL_PX, QUIET, Align::Center);
             canvas.text(&label.text, [x, frame.bottom + 24.0], look)?;
         }
     }

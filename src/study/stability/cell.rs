@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::physics::BodyState;
 use crate::recording::{Account, Outcome, Recording, initial_states};
 use crate::scene::Scene;
-use crate::study::breaches::{Breach, breaches};
+use crate::study::breaches::{Breach, breaches, energy_rises, momentum_changes};
 
 /// What stands for an engine that cannot do the case.
 const REFUSED: &str = "Refused";
@@ -156,28 +156,14 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 fn energy_error(expected: &Expected, metrics: &[Metrics]) -> Option<f64> {
     let bound = expected.energy.as_ref()?;
-    let start = &metrics[0];
-    let scale = bound.scale.unwrap_or_else(|| start.energy_scale());
-    let rises = metrics.iter().map(|at| {
-        let rise = (at.total_energy() - start.total_energy()) / scale;
-        if bound.loss_max.is_some() {
-            rise.abs()
-        } else {
-            rise
-        }
-    });
-    largest(rises)
+    let falls_count = bound.loss_max.is_some();
+    let rises = energy_rises(bound, metrics);
+    largest(rises.map(|(_, rise)| if falls_count { rise.abs() } else { rise }))
 }
 
 fn momentum_error(expected: &Expected, metrics: &[Metrics]) -> Option<f64> {
     let bound = expected.momentum.as_ref()?;
-    let start = &metrics[0];
-    let scale = bound.scale.unwrap_or(start.momentum_scale);
-    largest(
-        metrics
-            .iter()
-            .map(|at| (at.momentum - start.momentum).norm() / scale),
-    )
+    largest(momentum_changes(bound, metrics).map(|(_, change)| change))
 }
 
 /// Impacts due less those found, of the kinds that the case counts.

@@ -16,7 +16,7 @@ const SPRING_DT: f64 = 1.0 / 128.0;
 /// A symplectic step below its limit swings about the right energy: by no more than
 /// (1 + s)/(1 - s), s = sqrt(k dt²/mu)/2, which is 8 at 2.4, the last point of the grid below the
 /// limit of 4. At 4.2, the first one past it, the energy grows 2.5 times in every step, until the
-/// swing passes through the middle, where the spring turns round: a hundredfold, at least.
+/// swing passes through the middle, where the spring turns round: 640 times, at the least.
 const SPRING_GROWTH_MAX: f64 = 30.0;
 /// Revolutions of an orbit.
 const REVOLUTIONS: f64 = 10.0;
