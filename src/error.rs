@@ -161,6 +161,14 @@ pub enum Error {
         /// The name in it.
         scene: String,
     },
+    /// What a solver is known to do on a case is missing, or cannot be derived.
+    #[error("case `{case}`: {message}")]
+    Profile {
+        /// The case.
+        case: String,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
     /// A time step that cannot be taken.
     #[error("time step {dt:?} s: {message}")]
     Step {

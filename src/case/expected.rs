@@ -1,7 +1,10 @@
 //! What must hold on a scene, whatever computes it, and why: bounds as data (`expected.toml`).
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
+use super::Profile;
 use crate::physics::{BodyState, Vector3};
 use crate::recording::initial_states;
 use crate::scene::fault::{fault, finite, finite_vector, not_negative, positive};
@@ -35,6 +38,11 @@ pub struct Expected {
     pub speed: Option<SpeedBound>,
     /// Where bodies are at the end.
     pub end: Option<End>,
+    /// What the case tests, in a word or two; checks are summed up by it.
+    pub topic: Option<String>,
+    /// What each engine is known to do on the case, by its name.
+    #[serde(default)]
+    pub profile: BTreeMap<String, Profile>,
 }
 
 /// Bounds of the total energy, as shares of a scale.
@@ -265,7 +273,35 @@ impl Expected {
         }
         self.check_impacts(scene)?;
         self.check_mirror(scene)?;
-        self.check_end(scene)
+        self.check_end(scene)?;
+        let mut profiles = self.profile.iter();
+        profiles.try_for_each(|(name, profile)| {
+            profile.check(&root("profile").key(name.clone()), scene)
+        })
+    }
+
+    /// Whether it bounds anything, whatever computes the scene.
+    #[must_use]
+    pub fn has_bounds(&self) -> bool {
+        let Self {
+            dt: _,
+            energy,
+            momentum,
+            penetration,
+            impacts,
+            mirror,
+            speed,
+            end,
+            topic: _,
+            profile: _,
+        } = self;
+        energy.is_some()
+            || momentum.is_some()
+            || penetration.is_some()
+            || impacts.is_some()
+            || mirror.is_some()
+            || speed.is_some()
+            || end.is_some()
     }
 
     fn check_ladder(&self) -> std::result::Result<(), Fault> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
-use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH};
+use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH, baseline_file, thinning};
 use crate::error::{Error, Result};
 use crate::physics::Vector3;
 use crate::recording::{
@@ -136,6 +136,30 @@ impl Library {
     fn expected(&self, name: &str, scene: &Scene) -> Result<Option<Expected>> {
         self.file(name, "expected.toml")?
             .map(|file| Expected::parse(&file.text()?, &file.path, scene))
+            .transpose()
+    }
+
+    /// The stored recording of an engine on a case's scene, on every n-th sample (see
+    /// [`thinning`]); it may end before the scene does.
+    ///
+    /// # Errors
+    /// Something wrong with its file.
+    pub fn baseline(&self, scene: &Scene, engine: &str) -> Result<Option<Recording>> {
+        let Some(table) = self.file(&scene.name, &baseline_file(engine))? else {
+            return Ok(None);
+        };
+        let thinned = scene.every(thinning(scene));
+        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
+        read_trajectory_start(engine, &thinned, bytes, path).map(Some)
+    }
+
+    /// The text of a case's `expected.toml`, as it stands.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn expected_text(&self, name: &str) -> Result<Option<String>> {
+        self.file(name, "expected.toml")?
+            .map(|file| file.text())
             .transpose()
     }
 

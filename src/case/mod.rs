@@ -3,14 +3,20 @@
 //! Names resolve in the folder `reference/` (or another one), else among the cases that are
 //! compiled in; then among the hard cases of `hard/`, likewise.
 
+mod baseline;
 mod expected;
 mod library;
+mod profile;
+mod profile_toml;
 
+pub use baseline::{baseline_file, thinning};
 pub use expected::{
     Axis, End, EndState, EnergyBound, Expected, ImpactCounts, Mirror, MomentumBound,
     PenetrationBound, SpeedBound,
 };
 pub use library::{HARD, Library, REFERENCE};
+pub use profile::{Metric, Profile, Tolerance, Tolerances};
+pub use profile_toml::with_profile;
 
 use std::path::Path;
 

@@ -2,6 +2,7 @@
 
 mod args;
 mod bodies;
+mod check;
 mod cost;
 mod effects;
 mod output;
@@ -36,6 +37,9 @@ enum Command {
     Cost(cost::Args),
     /// Run hard cases on every engine and step: which engine survives what?
     Stability(stability::Args),
+    /// Hold solvers against truth, their own stored recordings and Rapier's: exit code 1 if one no
+    /// longer agrees
+    Check(check::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
     /// Switch each effect of a scene, one at a time: what it costs, and what it changes
@@ -46,13 +50,15 @@ enum Command {
 
 /// Parses the arguments and does what they say; gives the exit code.
 ///
-/// Exit 0: done (a blow-up is a result, with a warning). Exit 2: could not run, with one line.
+/// Exit 0: done (a blow-up is a result, with a warning). Exit 1: a check failed. Exit 2: could not
+/// run, with one line.
 #[must_use]
 pub fn main() -> std::process::ExitCode {
     let cli = Cli::parse();
     let done = output::tidy_up_on_interrupt().and_then(|()| dispatch(cli.command));
     match done {
-        Ok(()) => std::process::ExitCode::SUCCESS,
+        Ok(true) => std::process::ExitCode::SUCCESS,
+        Ok(false) => std::process::ExitCode::from(1),
         Err(error) => {
             output::complain(&error);
             std::process::ExitCode::from(2)
@@ -60,16 +66,19 @@ pub fn main() -> std::process::ExitCode {
     }
 }
 
-fn dispatch(command: Command) -> Result<()> {
+/// Whether all that was to be checked holds.
+fn dispatch(command: Command) -> Result<bool> {
     match command {
         Command::Report(args) => report::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Cost(args) => cost::run(&args),
         Command::Stability(args) => stability::run(&args),
+        Command::Check(args) => return check::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Scenes(args) => scenes::run(&args),
     }
+    .map(|()| true)
 }
 
 #[cfg(test)]

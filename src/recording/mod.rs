@@ -1,6 +1,7 @@
 //! What an engine produced: states on the scene's time grid, events, work, and how it ended.
 
 mod concession;
+mod digest;
 mod digits;
 mod event;
 mod events_csv;
@@ -161,6 +162,27 @@ impl Recording {
             position: fewest.position.min(digits.position),
             velocity: fewest.velocity.min(digits.velocity),
         })
+    }
+
+    /// Every n-th sample, the start first. Valid for n above 0.
+    #[must_use]
+    pub fn every(&self, n: usize) -> Self {
+        let samples = self.samples().step_by(n);
+        Self {
+            states: samples.flatten().copied().collect(),
+            digits: None,
+            ..self.clone()
+        }
+    }
+
+    /// The first samples, and the events up to the last of them; at least the start.
+    #[must_use]
+    pub fn up_to(&self, samples: usize, scene: &Scene) -> Self {
+        let samples = samples.clamp(1, self.sample_count());
+        let mut start = self.clone();
+        start.states.truncate(samples * self.body_count);
+        start.events.truncate_after(scene.sample_time(samples - 1));
+        start
     }
 
     /// The states at a sample. Shape: `[body]`.

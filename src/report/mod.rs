@@ -4,6 +4,7 @@ mod bodies;
 mod case_page;
 #[cfg(feature = "plots")]
 pub mod chart;
+mod check;
 mod cost;
 mod effects_page;
 mod files;
@@ -21,6 +22,7 @@ mod template;
 
 pub use bodies::{bodies_findings, bodies_table, write_bodies};
 pub use case_page::findings;
+pub use check::{blessing_text, check_junit, check_text, replay_text, write_blessing};
 pub use cost::CostReport;
 pub use effects_page::{effects_findings, effects_table, write_effects};
 pub use files::{Folder, remove_unfinished};

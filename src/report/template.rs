@@ -9,6 +9,16 @@ use crate::error::Result;
 
 /// Fills in a template. Tags may stand on lines of their own without leaving a trace.
 pub(super) fn fill(template: &str, page: impl Serialize) -> Result<String> {
+    fill_as("page", template, page)
+}
+
+/// The same for XML: every value is escaped.
+pub(super) fn fill_xml(template: &str, page: impl Serialize) -> Result<String> {
+    fill_as("page.xml", template, page)
+}
+
+/// The ending of the name decides how values are escaped.
+fn fill_as(name: &str, template: &str, page: impl Serialize) -> Result<String> {
     let mut environment = Environment::new();
     let mut syntax = SyntaxConfig::builder();
     syntax
@@ -17,8 +27,8 @@ pub(super) fn fill(template: &str, page: impl Serialize) -> Result<String> {
         .keep_trailing_newline(true);
     environment.set_syntax(syntax.build()?);
     environment.add_filter("cell", cell);
-    environment.add_template("page", template)?;
-    Ok(environment.get_template("page")?.render(Serde(page))?)
+    environment.add_template(name, template)?;
+    Ok(environment.get_template(name)?.render(Serde(page))?)
 }
 
 /// Text made safe for a cell of a Markdown table: names are free text.

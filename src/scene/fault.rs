@@ -1,13 +1,14 @@
 //! What is wrong with a file of data, where, and what would be right; and the rules that numbers
 //! go by.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// One step from the root of a file to a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PathStep {
     /// A key of a table.
-    Key(&'static str),
+    Key(Cow<'static, str>),
     /// A place in an array, counted from 0.
     Index(usize),
 }
@@ -19,8 +20,8 @@ pub struct FieldPath(pub Vec<PathStep>);
 impl FieldPath {
     /// The field of that key in it.
     #[must_use]
-    pub fn key(mut self, key: &'static str) -> Self {
-        self.0.push(PathStep::Key(key));
+    pub fn key(mut self, key: impl Into<Cow<'static, str>>) -> Self {
+        self.0.push(PathStep::Key(key.into()));
         self
     }
 

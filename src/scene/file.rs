@@ -97,7 +97,7 @@ fn locate(text: &str, path: &FieldPath) -> usize {
     let mut value = &root;
     for step in &path.0 {
         let found = match (step, value.get_ref()) {
-            (PathStep::Key(key), DeValue::Table(table)) => table.get(*key),
+            (PathStep::Key(key), DeValue::Table(table)) => table.get(key.as_ref()),
             (PathStep::Index(index), DeValue::Array(array)) => array.get(*index),
             (PathStep::Key(_) | PathStep::Index(_), _) => None,
         };

@@ -91,6 +91,19 @@ impl Scene {
         count * self.sample_every
     }
 
+    /// The same scene with every n-th sample; n divides the count of its samples.
+    #[must_use]
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "check() keeps samples far below 2^53"
+    )]
+    pub fn every(&self, n: usize) -> Self {
+        Self {
+            sample_every: self.sample_every * n as f64,
+            ..self.clone()
+        }
+    }
+
     /// Index of the body of that name.
     #[must_use]
     pub fn body_index(&self, name: &str) -> Option<usize> {

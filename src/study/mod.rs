@@ -2,6 +2,7 @@
 
 pub mod bodies;
 mod breaches;
+pub mod check;
 pub mod cost;
 mod effects;
 mod machine;

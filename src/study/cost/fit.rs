@@ -87,7 +87,7 @@ pub(super) fn falling(logs: &[[f64; 2]]) -> Option<Order> {
 }
 
 /// Least squares: the slope and its standard error.
-pub(super) fn slope(points: &[[f64; 2]]) -> (f64, f64) {
+pub(in crate::study) fn slope(points: &[[f64; 2]]) -> (f64, f64) {
     let mut count = 0.0;
     let mut mean = [0.0; 2];
     for point in points {

@@ -23,6 +23,7 @@ mod tune;
 
 pub use contender::{Contender, STOCK, is_searched, setting};
 pub use cuts::StepCost;
+pub(in crate::study) use fit::slope;
 pub use fit::{Order, OrderFit, Window, fit_order};
 pub use front::pareto_front;
 pub use ladder::{Rung, ladder};

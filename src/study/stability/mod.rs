@@ -48,7 +48,7 @@ impl Bounded {
     /// The case, if it says what must hold.
     #[must_use]
     pub fn of(case: Case) -> Option<Self> {
-        let expected = case.expected?;
+        let expected = case.expected.filter(Expected::has_bounds)?;
         Some(Self {
             scene: case.scene,
             expected,

@@ -1,0 +1,228 @@
+//! `carom check`: does a solver still agree with truth, with itself and with Rapier?
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use rayon::prelude::*;
+
+use super::args::{LibraryArgs, chosen};
+use super::output::{progress, say};
+use crate::case::{Case, Library, REFERENCE};
+use crate::engine::{DEFAULT_DT, EngineKind, EngineSpec, engines};
+use crate::error::{Error, Result};
+use crate::recording::read_trajectory_start;
+use crate::report::{blessing_text, check_junit, check_text, replay_text, write_blessing};
+use crate::study::check::{
+    Blessing, Candidate, Replay, Subject, bless, check, digests, own_candidate, profile, replay,
+};
+
+/// How the report is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// A line a case, more where something fails
+    Text,
+    /// All that was measured
+    Json,
+    /// JUnit's XML, for the pages of continuous integration
+    Junit,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Names of cases [default: all]
+    cases: Vec<String>,
+    /// Engines, separated by commas [default: all hand-written ones]
+    #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
+    engines: Vec<String>,
+    /// Judge by what is stored of another engine
+    #[arg(long, value_name = "NAME")]
+    like: Option<String>,
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Print every metric of every case
+    #[arg(long, short)]
+    verbose: bool,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// Derive every tolerance anew, show what changes, and store it
+    #[arg(long, conflicts_with_all = ["replay", "digests"])]
+    bless: bool,
+    /// Store also what would notice less than before
+    #[arg(long, requires = "bless")]
+    widen: bool,
+    /// Run one case again and compare it bit by bit with a trajectory that `carom run` wrote
+    #[arg(long, value_name = "FILE", conflicts_with = "digests")]
+    replay: Option<PathBuf>,
+    /// Print the digest of every recording, and judge nothing
+    #[arg(long)]
+    digests: bool,
+}
+
+/// Whether everything held.
+pub(super) fn run(args: &Args) -> Result<bool> {
+    let library = args.library.library();
+    let cases = cases(&args.cases, &library)?;
+    let specs = specs(&args.engines)?;
+    if let Some(file) = &args.replay {
+        return run_again(file, &cases, &specs, args);
+    }
+    let candidates: Vec<Candidate> = specs
+        .iter()
+        .map(|spec| judged_as(spec, args.like.as_ref()))
+        .collect();
+    if args.digests {
+        for (digest, case, solver) in digests(&cases, &candidates)? {
+            say(format_args!("{digest}  {solver}/{case}"))?;
+        }
+        return Ok(true);
+    }
+    if args.bless {
+        return store(&cases, &candidates, &library, args);
+    }
+    for candidate in &candidates {
+        for case in &cases {
+            profile(case, &candidate.like)?;
+        }
+    }
+    let bar = progress(cases.len() * candidates.len(), args.quiet);
+    let report = check(&cases, &library, &candidates, &|case| {
+        bar.inc(1);
+        bar.set_message(case.to_owned());
+    })?;
+    bar.finish_and_clear();
+    match args.format {
+        Format::Text if args.quiet => {}
+        Format::Text => say(check_text(&report, args.verbose).trim_end())?,
+        Format::Json => say(serde_json::to_string_pretty(&report)?)?,
+        Format::Junit => say(check_junit(&report)?.trim_end())?,
+    }
+    Ok(report.holds)
+}
+
+fn cases(names: &[String], library: &Library) -> Result<Vec<Case>> {
+    let names: BTreeSet<String> = if names.is_empty() {
+        library.names()?.into_iter().collect()
+    } else {
+        names.iter().cloned().collect()
+    };
+    if names.is_empty() {
+        return Err(Error::NoCases);
+    }
+    names.iter().map(|name| library.case(name)).collect()
+}
+
+/// The engines of these names; without names, all hand-written ones.
+fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
+    if !names.is_empty() {
+        return chosen(names, &[]);
+    }
+    let all = engines().into_iter();
+    Ok(all
+        .filter(|spec| matches!(spec.kind, EngineKind::Impulse(_)))
+        .collect())
+}
+
+fn judged_as<'a>(subject: &'a dyn Subject, like: Option<&String>) -> Candidate<'a> {
+    match like {
+        Some(like) => Candidate {
+            subject,
+            like: like.clone(),
+        },
+        None => own_candidate(subject),
+    }
+}
+
+/// `--replay`: one case, one engine, one file.
+fn run_again(file: &Path, cases: &[Case], specs: &[EngineSpec], args: &Args) -> Result<bool> {
+    let one = |argument: &'static str, remedy: &str| Error::Argument {
+        argument,
+        found: file.display().to_string(),
+        remedy: remedy.to_owned(),
+    };
+    let [case] = cases else {
+        return Err(one("replay", "name the one case that it is a recording of"));
+    };
+    let spec = match (specs, args.engines.is_empty()) {
+        ([spec], _) => spec,
+        (_, true) => &specs[0],
+        (_, false) => return Err(one("replay", "name the one engine that made it")),
+    };
+    let scene = &case.scene;
+    let table = File::open(file).map_err(|wrong| Error::read(file, wrong))?;
+    let name = file.display().to_string();
+    let recorded = read_trajectory_start(&spec.name, scene, table, &name)?;
+    let replayed = spec.record(scene, DEFAULT_DT)?;
+    let found = replay(scene, &recorded, &replayed);
+    match args.format {
+        Format::Json => say(serde_json::to_string_pretty(&found)?)?,
+        Format::Text | Format::Junit => say(format_args!(
+            "{} on {}: {}",
+            spec.name,
+            scene.name,
+            replay_text(&found)
+        ))?,
+    }
+    Ok(matches!(found, Replay::Same { .. }))
+}
+
+/// `--bless`: shows what changes, and stores it unless that would notice less.
+fn store(cases: &[Case], candidates: &[Candidate], library: &Library, args: &Args) -> Result<bool> {
+    let Library::Folder(folder) = library else {
+        return Err(Error::Argument {
+            argument: "bless",
+            found: "the cases compiled in".into(),
+            remedy: format!(
+                "name a folder of cases with --reference, or start where `{REFERENCE}` is"
+            ),
+        });
+    };
+    let bar = progress(cases.len() * candidates.len(), args.quiet);
+    let jobs: Vec<(&Case, &Candidate)> = cases
+        .iter()
+        .flat_map(|case| candidates.iter().map(move |candidate| (case, candidate)))
+        .collect();
+    let blessings = jobs
+        .par_iter()
+        .map(|(case, candidate)| {
+            let blessing = bless(case, library, candidate, DEFAULT_DT)?;
+            bar.inc(1);
+            Ok(blessing)
+        })
+        .collect::<Result<Vec<Blessing>>>()?;
+    bar.finish_and_clear();
+    say(blessing_text(&blessings).trim_end())?;
+    let wider = blessings
+        .iter()
+        .filter(|blessing| blessing.widens())
+        .count();
+    if wider > 0 && !args.widen {
+        say(format_args!(
+            "{wider} would notice less than before; nothing was written. If that is meant, say \
+             --widen"
+        ))?;
+        return Ok(false);
+    }
+    let mut written = 0;
+    for (case, of_case) in cases.iter().zip(blessings.chunks(candidates.len())) {
+        let scene = &case.scene;
+        let mut text = library.expected_text(&scene.name)?;
+        for blessing in of_case
+            .iter()
+            .filter(|blessing| !blessing.changes.is_empty())
+        {
+            text = Some(write_blessing(folder, scene, text.as_deref(), blessing)?);
+            written += 1;
+        }
+    }
+    say(match written {
+        0 => "nothing changes".to_owned(),
+        _ => format!("{written} profiles written"),
+    })?;
+    Ok(true)
+}

@@ -1,0 +1,9 @@
+//! What a check found: for people, and for machines that read JUnit's XML.
+
+mod blessing;
+mod junit;
+mod text;
+
+pub use blessing::{blessing_text, write_blessing};
+pub use junit::check_junit;
+pub use text::{check_text, replay_text};
