@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::engine::external;
 use crate::error::{Error, Result};
 use crate::report::remove_unfinished;
 
@@ -60,7 +61,7 @@ pub(super) fn spinner(message: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
-/// On Ctrl-C and its kin, leaves complete files only and ends as shells expect: 128 plus the
+/// On Ctrl-C and its kin, leaves complete files only and no solver running, and ends as shells expect: 128 plus the
 /// number of the signal.
 #[cfg(unix)]
 pub(super) fn tidy_up_on_interrupt() -> Result<()> {
@@ -75,6 +76,7 @@ pub(super) fn tidy_up_on_interrupt() -> Result<()> {
         signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(failed)?;
     std::thread::spawn(move || {
         if let Some(signal) = signals.forever().next() {
+            external::end_all();
             remove_unfinished();
             std::process::exit(128 + signal);
         }

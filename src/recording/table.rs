@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless};
 
 /// Characters of a foreign text that a message shows, at most.
 const SHOWN_MAX: usize = 80;
@@ -121,5 +121,5 @@ pub(super) fn shown(text: &str) -> String {
     if start.len() < text.len() {
         start.push('…');
     }
-    start.escape_debug().to_string()
+    harmless(&start)
 }
