@@ -109,3 +109,40 @@ fn remove(folder: &Path) {
         }
     }
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    #[test]
+    fn a_panic_ends_the_solver_and_removes_its_folder() {
+        let mut group = None;
+        let mut folder = PathBuf::new();
+        let unwound = catch_unwind(AssertUnwindSafe(|| {
+            let mut running = Running::open().unwrap();
+            folder = running.folder().to_owned();
+            running.start(Command::new("sleep").arg("300")).unwrap();
+            assert!(!running.has_ended().unwrap());
+            group = running.child.as_ref().map(process::group);
+            std::panic::resume_unwind(Box::new(()));
+        }));
+        assert!(unwound.is_err());
+        // The leader was waited for, so that its number is free again.
+        assert!(rustix::process::test_kill_process(group.unwrap()).is_err());
+        assert!(folder.is_absolute() && !folder.exists());
+        assert!(!running().contains_key(&folder));
+    }
+
+    #[test]
+    fn a_solver_that_was_ended_says_how_once() {
+        let mut running = Running::open().unwrap();
+        running.start(&mut Command::new("false")).unwrap();
+        while !running.has_ended().unwrap() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        assert_eq!(running.end().unwrap().unwrap().code(), Some(1));
+        assert!(running.end().unwrap().is_none());
+    }
+}
