@@ -8,8 +8,10 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+#[cfg(unix)]
 use crate::engine::external;
 use crate::error::{Error, Result};
+#[cfg(unix)]
 use crate::report::remove_unfinished;
 
 /// Prints a result. A reader who has seen enough (`| head`) is no error.
