@@ -119,6 +119,22 @@ pub enum Error {
         /// What would be right.
         remedy: String,
     },
+    /// A user's solver that cannot be started at all: carom could not run.
+    #[error("solver `{program}` cannot be started: {message}")]
+    SolverStart {
+        /// The program.
+        program: String,
+        /// What the system said, and what would be right.
+        message: String,
+    },
+    /// What a user's solver did wrong on one scene: a failed check.
+    #[error("solver on `{scene}`: {message}")]
+    Solver {
+        /// Name of the scene.
+        scene: String,
+        /// What it did.
+        message: String,
+    },
     /// The same engine twice.
     #[error("engine `{name}` is asked for twice; name each engine once")]
     EngineTwice {
@@ -236,4 +252,15 @@ impl Error {
             source,
         }
     }
+}
+
+/// Text of foreign origin as a message of one line shows it: what a terminal would obey, or would
+/// not show, is escaped.
+pub(crate) fn harmless(text: &str) -> String {
+    let shown = |c: char| match c {
+        '"' | '\'' | '\\' => c.to_string(),
+        '\t' => ' '.to_string(),
+        c => c.escape_debug().to_string(),
+    };
+    text.chars().map(shown).collect()
 }

@@ -6,9 +6,8 @@ use include_dir::{Dir, include_dir};
 
 use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH, baseline_file, thinning};
 use crate::error::{Error, Result};
-use crate::physics::Vector3;
 use crate::recording::{
-    Recording, Undetermined, read_events, read_trajectory, read_trajectory_start,
+    Recording, Undetermined, check_start, read_events, read_trajectory, read_trajectory_start,
 };
 use crate::scene::{self, Scene};
 
@@ -228,23 +227,6 @@ fn file_in(embedded: &Dir<'_>, case: &str, file: &str) -> Option<CaseFile> {
         path: format!("{case}/{file} (compiled in)"),
         bytes: found.contents().to_vec(),
     })
-}
-
-/// Truth must start where the scene starts, to the rounding of its printed digits.
-fn check_start(scene: &Scene, truth: &Recording, file: &str) -> Result<()> {
-    let starts = crate::recording::initial_states(scene);
-    for ((body, ours), theirs) in scene.bodies.iter().zip(&starts).zip(truth.sample(0)) {
-        let near = |a: &Vector3, b: &Vector3| (a - b).norm() <= 1e-9 * a.norm().max(b.norm());
-        let same = near(&ours.position, &theirs.position) && near(&ours.velocity, &theirs.velocity);
-        if !same {
-            return Err(Error::Table {
-                file: file.to_owned(),
-                line: 2,
-                message: format!("`{}` starts elsewhere than in the scene", body.name),
-            });
-        }
-    }
-    Ok(())
 }
 
 /// Marks that a truth of carom's own ends where the model has no single answer any more.

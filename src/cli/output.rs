@@ -8,7 +8,10 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+#[cfg(unix)]
+use crate::engine::external;
 use crate::error::{Error, Result};
+#[cfg(unix)]
 use crate::report::remove_unfinished;
 
 /// Prints a result. A reader who has seen enough (`| head`) is no error.
@@ -60,7 +63,7 @@ pub(super) fn spinner(message: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
-/// On Ctrl-C and its kin, leaves complete files only and ends as shells expect: 128 plus the
+/// On Ctrl-C and its kin, leaves complete files only and no solver running, and ends as shells expect: 128 plus the
 /// number of the signal.
 #[cfg(unix)]
 pub(super) fn tidy_up_on_interrupt() -> Result<()> {
@@ -75,6 +78,7 @@ pub(super) fn tidy_up_on_interrupt() -> Result<()> {
         signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(failed)?;
     std::thread::spawn(move || {
         if let Some(signal) = signals.forever().next() {
+            external::end_all();
             remove_unfinished();
             std::process::exit(128 + signal);
         }

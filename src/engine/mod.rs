@@ -1,6 +1,7 @@
 //! *How* a scene is computed: engines, what they plan to do, and the recorder that drives them.
 
 pub mod exact;
+pub mod external;
 mod impulse;
 mod plan;
 #[cfg(feature = "rapier")]
@@ -9,6 +10,7 @@ mod record;
 mod spec;
 mod steps;
 
+pub use external::{ExternalSolver, Limits, trajectory_file};
 pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
 pub use record::{drive, drive_to, record, record_within};

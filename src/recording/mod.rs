@@ -6,8 +6,10 @@ mod digits;
 mod event;
 mod events_csv;
 mod ledger;
+mod misplaced;
 mod number;
 mod outcome;
+mod start;
 mod table;
 mod trajectory_csv;
 
@@ -18,6 +20,7 @@ pub use events_csv::{read_events, write_events};
 pub use ledger::{Account, Entry, Ledger};
 pub use number::finite_or_blank;
 pub use outcome::{CollapseReason, Outcome};
+pub use start::{check_start, initial_states};
 pub use trajectory_csv::{read_trajectory, read_trajectory_start, write_trajectory};
 
 use serde::Serialize;
@@ -199,17 +202,4 @@ impl Recording {
     pub fn samples(&self) -> impl ExactSizeIterator<Item = &[BodyState]> {
         self.states.chunks_exact(self.body_count)
     }
-}
-
-/// The states with which a scene starts. Shape: `[body]`.
-///
-/// A negative zero becomes a positive one: that no engine ever meets a negative zero is what
-/// makes an absent effect equal its neutral value bit for bit.
-#[must_use]
-pub fn initial_states(scene: &Scene) -> Vec<BodyState> {
-    let state = |body: &crate::scene::Body| BodyState {
-        position: body.position.map(|x| x + 0.0).into(),
-        velocity: body.velocity.map(|v| v + 0.0).into(),
-    };
-    scene.bodies.iter().map(state).collect()
 }

@@ -2,7 +2,10 @@
 
 use std::io::Read;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless};
+
+/// Characters of a foreign text that a message shows, at most.
+const SHOWN_MAX: usize = 80;
 
 /// A CSV file that is being read row by row.
 pub(super) struct Table<'a, R> {
@@ -22,11 +25,18 @@ impl<'a, R: Read> Table<'a, R> {
             row: csv::StringRecord::new(),
         };
         let found = table.reader.headers().cloned();
-        if found.map_err(|wrong| table.unreadable(&wrong))? != *header {
-            let message = format!("the header must be `{}`", header.join(","));
-            return Err(table.complaint(1, message));
+        let found = found.map_err(|wrong| table.unreadable(&wrong))?;
+        if found == *header {
+            return Ok(table);
         }
-        Ok(table)
+        let due = header.join(",");
+        let message = if found.is_empty() {
+            format!("nothing is there; the header must be `{due}`")
+        } else {
+            let found = found.iter().collect::<Vec<_>>().join(",");
+            format!("the header must be `{due}`, not `{}`", shown(&found))
+        };
+        Err(table.at(1).wrong(message))
     }
 
     /// Reads the next row; false at the end of the file.
@@ -46,13 +56,26 @@ impl<'a, R: Read> Table<'a, R> {
         let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
         number.ok_or_else(|| {
             let name = self.header[column];
-            self.wrong(format!("`{name}` is `{text}`: not a finite number"))
+            self.wrong(format!(
+                "`{name}` is `{}`: not a finite number",
+                shown(text)
+            ))
         })
     }
 
     /// Something is wrong with the present row.
     pub fn wrong(&self, message: String) -> Error {
-        self.complaint(self.row.position().map_or(1, csv::Position::line), message)
+        self.place().wrong(message)
+    }
+
+    /// Where the present row stands; past the last one, where the next would.
+    pub fn place(&self) -> Place<'a> {
+        self.at(self.row.position().map_or(1, csv::Position::line))
+    }
+
+    fn at(&self, line: u64) -> Place<'a> {
+        let file = self.file;
+        Place { file, line }
     }
 
     fn unreadable(&self, wrong: &csv::Error) -> Error {
@@ -63,16 +86,40 @@ impl<'a, R: Read> Table<'a, R> {
             } => {
                 format!("{len} columns where {expected_len} are due")
             }
+            csv::ErrorKind::Utf8 { err, .. } => format!(
+                "not UTF-8 in column {}; write the file as UTF-8 text",
+                err.field() + 1
+            ),
             _ => wrong.to_string(),
         };
-        self.complaint(line, message)
+        self.at(line).wrong(message)
     }
+}
 
-    fn complaint(&self, line: u64, message: String) -> Error {
+/// A line of a table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place<'a> {
+    file: &'a str,
+    line: u64,
+}
+
+impl Place<'_> {
+    /// Something is wrong there.
+    pub fn wrong(self, message: String) -> Error {
         Error::Table {
             file: self.file.to_owned(),
-            line,
+            line: self.line,
             message,
         }
     }
+}
+
+/// Text of a foreign file as a message shows it: without control characters, and not all of it
+/// where it is long.
+pub(super) fn shown(text: &str) -> String {
+    let mut start: String = text.chars().take(SHOWN_MAX).collect();
+    if start.len() < text.len() {
+        start.push('…');
+    }
+    harmless(&start)
 }

@@ -8,7 +8,7 @@ use super::fault::{
 };
 use super::overlap::overlaps;
 use super::{Effects, Scene, Spring};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless};
 
 /// Samples times bodies that a recording may hold: 2 GB of states.
 const STATES_MAX: f64 = 4e7;
@@ -233,7 +233,7 @@ fn check_spring(
         if !names.contains_key(name.as_str()) {
             return Err(fault(
                 path.clone().key("between").index(end),
-                format!("`{}`, and no body has that name", printable(name)),
+                format!("`{}`, and no body has that name", harmless(name)),
                 "name two bodies of this scene",
             ));
         }
@@ -257,7 +257,7 @@ fn check_scene_name(name: &str) -> std::result::Result<(), Fault> {
     }
     Err(fault(
         FieldPath::default().key("name"),
-        format!("`{}`", printable(name)),
+        format!("`{}`", harmless(name)),
         "use 1 to 100 of the characters a-z, 0-9 and `-`; it is a folder name too",
     ))
 }
@@ -269,7 +269,7 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
     if name.chars().any(is_invisible) {
         return Err(fault(
             path.clone(),
-            format!("`{}`", printable(name)),
+            format!("`{}`", harmless(name)),
             "leave out control characters such as tabs, line ends and marks of direction",
         ));
     }
@@ -292,8 +292,4 @@ fn is_invisible(c: char) -> bool {
         '\u{2060}'..='\u{206f}',
     ];
     c.is_control() || c == '\u{feff}' || marks.iter().any(|range| range.contains(&c))
-}
-
-fn printable(text: &str) -> String {
-    text.escape_debug().to_string()
 }

@@ -10,6 +10,9 @@ mod departures;
 mod effects;
 mod exact_flight;
 mod exact_forces;
+mod example_solvers;
+#[cfg(unix)]
+mod external;
 #[cfg(feature = "rapier")]
 mod geometry;
 mod hard;
