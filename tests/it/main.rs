@@ -30,6 +30,7 @@ mod plan;
 mod rapier;
 mod robust;
 mod robust_matrix;
+mod robust_safeguards;
 mod scenes;
 mod slips;
 mod stability;

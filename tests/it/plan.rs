@@ -101,6 +101,46 @@ fn the_phases_are_those_of_the_effects_declared() {
     }
 }
 
+/// The same for `robust`: safeguards only where an effect can need them.
+fn expected_of_robust(declared: usize) -> Vec<&'static str> {
+    let has = |name: &str| {
+        let place = EFFECTS.iter().position(|(own, _)| *own == name);
+        place.is_some_and(|place| declared & (1 << place) != 0)
+    };
+    let meets = has("cushions") || has("contacts");
+    let joined = has("attraction") || has("springs");
+    [
+        ("room", meets),
+        ("length", joined),
+        ("attraction", has("attraction")),
+        ("drag", has("drag")),
+        ("springs", has("springs")),
+        ("gravity", has("gravity")),
+        ("pushes", meets && (joined || has("gravity"))),
+        ("motion", true),
+        ("rest", has("rest")),
+        ("cushions", has("cushions")),
+        ("contacts", has("contacts")),
+    ]
+    .into_iter()
+    .filter_map(|(name, present)| present.then_some(name))
+    .collect()
+}
+
+#[test]
+fn the_phases_of_robust_are_the_safeguards_that_a_scene_can_need() {
+    let spec = engine("robust").unwrap();
+    for declared in 0..1 << EFFECTS.len() {
+        let plan = plan(&with_effects(declared), &spec, DT).unwrap();
+        let names: Vec<_> = plan.phases.iter().map(|phase| phase.name).collect();
+        assert_eq!(
+            names,
+            expected_of_robust(declared),
+            "effects {declared:07b}"
+        );
+    }
+}
+
 /// Ten steps are enough for every effect to move some body by 1 % of a radius, beside any
 /// others: a phase that is listed and not run, or run without its effect, would move none.
 #[test]

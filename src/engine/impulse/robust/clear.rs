@@ -31,10 +31,8 @@ impl Robust {
                     } else {
                         speed
                     };
+                    // Surfaces in touch that stay so give 0/0, which `min` passes over.
                     clear = clear.min(gap / speed);
-                    if gap.is_nan() || gap <= 0.0 {
-                        return false;
-                    }
                 }
             }
         }

@@ -86,6 +86,10 @@ mod tests {
             neighbours.within(&at(&[0.0, 2.0, 4.4]), 1.5),
             [[0, 1], [1, 2]]
         );
+        let grown = at(&[0.0, 2.0, 4.4, 6.0]);
+        assert!(neighbours.within(&grown, 1.5).contains(&[2, 3]));
+        assert_eq!(neighbours.within(&at(&[0.0, f64::NAN]), 1.5), [[0, 1]]);
+        assert_eq!(neighbours.within(&at(&[0.0, 9.0]), 1.5).len(), 0);
         assert_eq!(neighbours.within(&at(&[0.0, f64::NAN]), 1.5), [[0, 1]]);
     }
 }

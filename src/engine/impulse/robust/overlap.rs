@@ -131,3 +131,72 @@ fn into_box(phases: &Phases, particles: &mut [Particle]) -> bool {
     }
     inside
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::touch::tests::{Sphere, start};
+    use super::*;
+
+    /// Spheres of radius 1 after they were moved apart; whether nothing overlaps any more.
+    fn separated(spheres: &[Sphere], half: Option<[f64; 3]>) -> (Vec<Particle>, bool) {
+        let walls = half.map_or_else(String::new, |[x, y, z]| {
+            format!(
+                "[effects.cushions]\nhalf_width={x:?}\nhalf_height={y:?}\nhalf_length={z:?}\n\
+                 restitution=1\n"
+            )
+        });
+        let effects = format!("[effects.contact]\nrestitution=1\n{walls}");
+        let (phases, mut particles, _) = start(spheres, &effects);
+        let apart = separate(&phases, &mut particles);
+        (particles, apart)
+    }
+
+    fn at(position: [f64; 3]) -> Sphere {
+        (1.0, position, [0.0; 3])
+    }
+
+    /// So many in a row along x about the middle, each half in the next.
+    fn row(count: u8) -> Vec<Sphere> {
+        let place = |n: u8| f64::from(n) - 0.5 * f64::from(count);
+        (0..count).map(|n| at([place(n), 0.0, 0.0])).collect()
+    }
+
+    /// Two part by their depth and a hair, which keeps them from touching; the centre of mass
+    /// stays.
+    #[test]
+    fn a_pair_parts_in_the_inverse_ratio_of_the_masses() {
+        let pair = [at([0.0; 3]), (3.0, [1.0, 0.0, 0.0], [0.0; 3])];
+        let (particles, apart) = separated(&pair, None);
+        assert!(apart);
+        let [one, other] = [0, 1].map(|body| particles[body].position.x);
+        let push = 1.0 + 2.0 * MORE;
+        // Roundings of places near 1.
+        assert!((one + 0.75 * push).abs() < 1e-15, "{one}");
+        assert!((other - (1.0 + 0.25 * push)).abs() < 1e-15, "{other}");
+    }
+
+    /// Two hundred centres in one place leave it in all directions. On one line they would be
+    /// left.
+    #[test]
+    fn a_heap_of_coincident_centres_comes_apart() {
+        assert!(separated(&vec![at([0.0; 3]); 200], None).1);
+    }
+
+    /// Pushes are shared among the overlaps of a body: 125 balls in a box that is a tenth wider
+    /// than they need would else be thrown about for good.
+    #[test]
+    fn a_crowd_in_a_box_with_some_room_comes_apart() {
+        let place = |n: u8| [n % 5, n / 5 % 5, n / 25].map(|n| f64::from(n) - 2.0);
+        let crowd: Vec<Sphere> = (0..125).map(|n| at(place(n))).collect();
+        assert!(separated(&crowd, Some([5.5; 3])).1);
+    }
+
+    /// Thirty in a row must spread over twice its length, which takes momentum; ten between walls
+    /// with a hundredth of room need some hundred rounds.
+    #[test]
+    fn rows_are_pulled_apart_as_long_as_there_is_room() {
+        assert!(separated(&row(30), None).1);
+        assert!(separated(&row(10), Some([10.1, 1.0, 1.0])).1);
+        assert!(!separated(&row(10), Some([9.9, 1.0, 1.0])).1);
+    }
+}

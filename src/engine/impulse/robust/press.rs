@@ -25,6 +25,8 @@ enum Pressed {
     Nowhere,
     /// They keep the gaps closed.
     Found,
+    /// With them gaps open or shrink by more than what counts as touching.
+    Loose,
     /// With them the forces found no end of the step.
     Lost,
 }
@@ -50,9 +52,10 @@ impl Robust {
             if resting.is_empty() {
                 return length;
             }
-            let longest = match self.press(phases, particles, &resting, length) {
+            let pressed = self.press(phases, particles, &resting, length);
+            let longest = match pressed {
                 Pressed::Nowhere => return length,
-                Pressed::Found => self.longest_slide(&resting).max(floor),
+                Pressed::Found | Pressed::Loose => self.longest_slide(&resting).max(floor),
                 Pressed::Lost if halvings < HALVINGS && length > floor => 0.5 * length,
                 Pressed::Lost => {
                     self.give_up(phases, particles, whole);
@@ -60,6 +63,7 @@ impl Robust {
                 }
             };
             if length <= longest * 1.001 {
+                self.conceded.loose += u64::from(pressed == Pressed::Loose);
                 return length;
             }
             halvings += 1;
@@ -138,8 +142,9 @@ impl Robust {
                 let opens = |((touch, change), size): ((&Touch, &f64), &f64)| {
                     *change < -touch.near || (*size > 0.0 && *change > touch.near)
                 };
-                let is_loose = resting.iter().zip(&changes).zip(&sizes).any(opens);
-                self.conceded.loose += u64::from(is_loose);
+                if resting.iter().zip(&changes).zip(&sizes).any(opens) {
+                    return Pressed::Loose;
+                }
                 break;
             }
             let (flow, start) = (&self.flow, &self.start);
@@ -286,4 +291,42 @@ fn pressing(one: &Touch, other: &Touch, flow: &Flow, particles: &[Particle]) -> 
             .sum();
     }
     coupling(one, other, &|body| flow.mobility(body, body, particles))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::touch::tests::start;
+    use super::*;
+
+    /// Velocities relative to the centre of mass change their sign: with the mean 2, 5 becomes -1
+    /// and 1 becomes 3, which keeps momentum and energy. The centre goes on where nothing from
+    /// outside acts.
+    #[test]
+    fn turning_back_keeps_momentum_and_energy_to_the_last_bit() {
+        let spheres = [
+            (1.0, [0.0; 3], [5.0, 0.0, 4.0]),
+            (3.0, [8.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
+        ];
+        let walls = "[effects.cushions]\nhalf_width=99\nhalf_length=99\nrestitution=1\n";
+        for (effects, goes) in [
+            ("", true),
+            (walls, false),
+            ("[effects.gravity]\nacceleration=[0,-1,0]\n", false),
+            ("[effects.drag]\ncoefficient=1\n", false),
+        ] {
+            let (phases, mut particles, _) = start(&spheres, effects);
+            turn_back(&phases, &mut particles, 0.5);
+            let [one, other] = [0, 1].map(|body| particles[body].velocity);
+            assert_eq!(one, Vector3::new(-1.0, 0.0, -2.0));
+            assert_eq!(other, Vector3::new(3.0, 0.0, 2.0));
+            let moved = if goes {
+                Vector3::new(1.0, 0.0, 0.5)
+            } else {
+                Vector3::zeros()
+            };
+            for (particle, (_, place, _)) in particles.iter().zip(spheres) {
+                assert_eq!(particle.position, Vector3::from(place) + moved, "{effects}");
+            }
+        }
+    }
 }

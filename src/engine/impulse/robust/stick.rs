@@ -67,29 +67,30 @@ fn add(into: &mut [f64], factor: f64, other: &[f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::neighbours::Neighbours;
-    use super::super::touch::touching;
+    use super::super::touch::tests::start;
     use super::*;
-    use crate::engine::impulse::particles;
-    use crate::engine::impulse::phases::Phases;
-    use crate::engine::spec::DragRule;
     use crate::physics::Vector3;
 
-    /// Three spheres in a ring: three touches, all kept closed; the momentum stays, the energy
-    /// falls.
+    /// Three spheres in a ring: three touches.
+    fn ring(masses: [f64; 3], speed: f64) -> (Vec<Particle>, Vec<Touch>) {
+        let spheres = [
+            (masses[0], [0.0; 3], [-speed, 0.0, 0.0]),
+            (masses[1], [2.0, 0.0, 0.0], [2.0 * speed, speed, 0.0]),
+            (
+                masses[2],
+                [1.0, 0.0, 3.0_f64.sqrt()],
+                [0.0, 0.0, 3.0 * speed],
+            ),
+        ];
+        let (_, particles, touches) = start(&spheres, "[effects.contact]\nrestitution=0.5\n");
+        assert_eq!(touches.len(), 3);
+        (particles, touches)
+    }
+
+    /// All kept closed; the momentum stays, the energy falls.
     #[test]
     fn slow_touches_come_to_rest_together() {
-        let text = "name='x'\nduration=1\nsample_every=1\n\
-            [[bodies]]\nname='a'\nmass=1\nradius=1\nposition=[0,0,0]\nvelocity=[-1e-7,0,0]\n\
-            [[bodies]]\nname='b'\nmass=2\nradius=1\nposition=[2,0,0]\nvelocity=[2e-7,1e-7,0]\n\
-            [[bodies]]\nname='c'\nmass=3\nradius=1\nposition=[1,0,1.7320508075688772]\nvelocity=[0,0,3e-7]\n\
-            [effects.contact]\nrestitution=0.5\n";
-        let scene = crate::scene::parse(text, "x").unwrap();
-        let phases = Phases::of(&scene, DragRule::Exponential);
-        let mut all = particles(&scene);
-        let mut touches = Vec::new();
-        touching(&phases, &all, &mut Neighbours::default(), &mut touches);
-        assert_eq!(touches.len(), 3);
+        let (mut all, touches) = ring([1.0, 2.0, 3.0], 1e-7);
         let momentum = |all: &[Particle]| all.iter().map(|p| p.velocity * p.mass).sum::<Vector3>();
         let energy = |all: &[Particle]| {
             all.iter()
@@ -103,5 +104,17 @@ mod tests {
         }
         assert!((momentum(&all) - before.0).norm() < 1e-21);
         assert!(energy(&all) < before.1);
+    }
+
+    /// Squares below those of doubles, 1e-160² / 1e9, and inverse masses whose products are
+    /// beyond them: velocities stay as they are, and numbers.
+    #[test]
+    fn numbers_beyond_those_of_doubles_change_no_velocity() {
+        for (masses, speed) in [([1e9; 3], 1e-160), ([1e-300; 3], 1e10)] {
+            let (mut all, touches) = ring(masses, speed);
+            bring_to_rest(&mut all, &touches, |_, _| {});
+            let most = all.iter().map(|p| p.velocity.norm()).sum::<f64>();
+            assert!(most <= 7.0 * speed, "{masses:?}: {most}");
+        }
     }
 }

@@ -126,7 +126,7 @@ impl Instant<'_> {
                     .map(|touch| (*touch, touch.rate(self.particles)))
                     .collect();
                 self.bounce(&all, &inverse, |_, _| 0.0, note);
-                if !self.stop_slow(&mut stops, note) || round >= 2 * REFLECTIONS_MAX {
+                if !self.stop_slow(&mut stops, note) {
                     break;
                 }
                 continue;
@@ -322,7 +322,132 @@ fn reflected(
 
 #[cfg(test)]
 mod tests {
+    use super::super::touch::tests::{Sphere, start};
     use super::*;
+
+    /// Settles the touches of the start; gives the spheres and what that came to.
+    fn settled(spheres: &[Sphere], effects: &str, pull: f64) -> (Vec<Particle>, Settled, usize) {
+        let (phases, mut particles, touches) = start(spheres, effects);
+        for particle in &mut particles {
+            particle.force = Vector3::y() * (-pull * particle.mass);
+        }
+        let mut instant = Instant {
+            particles: &mut particles,
+            touches: &touches,
+            rest: phases.rest,
+            dt: 1.0,
+        };
+        let mut notes = 0;
+        let settled = instant.settle(&mut |_| notes += 1);
+        (particles, settled, notes)
+    }
+
+    /// A ball that fills the gap between two walls keeps `e^n` of its speed after n rounds. With
+    /// e = 1/2 that is spent after 30, `2^-30 < 1e-9`; with 0.9 it goes on for as many rounds as
+    /// impacts that lose may, without loss for as many as any may, and both are cut short.
+    #[test]
+    fn a_ball_between_two_walls_at_once_ends_in_rounds_that_can_be_counted() {
+        for (e, rounds, cut_short) in [
+            (0.0, 1, false),
+            (0.5, 31, false),
+            (0.9, LOSING_MAX + 1, true),
+            (1.0, REFLECTIONS_MAX + 1, true),
+        ] {
+            let walls =
+                format!("[effects.cushions]\nhalf_width=1.0\nhalf_length=9.0\nrestitution={e:?}\n");
+            let (particles, found, _) = settled(&[(1.0, [0.0; 3], [1.0, 0.0, 0.0])], &walls, 0.0);
+            let rounds = u64::from(rounds);
+            assert_eq!(found, Settled { cut_short, rounds }, "{e}");
+            assert_eq!(particles[0].velocity, Vector3::zeros(), "{e}");
+        }
+    }
+
+    /// Five in a row, e = 0, the first comes in: one solution for all, a fifth of its speed each.
+    #[test]
+    fn a_row_that_does_not_bounce_moves_on_together_after_one_round() {
+        let sphere = |place: u8| {
+            let speed = f64::from(u8::from(place == 0));
+            (1.0, [2.0 * f64::from(place), 0.0, 0.0], [speed, 0.0, 0.0])
+        };
+        let row: Vec<Sphere> = (0..5).map(sphere).collect();
+        let (particles, found, notes) = settled(&row, "[effects.contact]\nrestitution=0\n", 0.0);
+        assert_eq!((found.rounds, notes), (1, 4));
+        for particle in &particles {
+            // Four impulses of a few roundings.
+            assert!((particle.velocity.x - 0.2).abs() < 1e-15);
+        }
+    }
+
+    /// Three balls on the floor, the top one comes in with 1e-3: under a pull of 10 that would
+    /// lift it by 5e-8 of a radius, and less after each of many bounces. One round ends it.
+    #[test]
+    fn bounces_too_low_to_show_end_in_one_round() {
+        let ball = |place: u8| {
+            let speed = if place == 2 { -1e-3 } else { 0.0 };
+            (
+                1.0,
+                [0.0, 2.0 * f64::from(place) - 8.0, 0.0],
+                [0.0, speed, 0.0],
+            )
+        };
+        let pile: Vec<Sphere> = (0..3).map(ball).collect();
+        let effects = "[effects.contact]\nrestitution=0.8\n[effects.cushions]\nhalf_width=9\n\
+            half_length=9\nhalf_height=9\nrestitution=0.8\n";
+        let (particles, found, _) = settled(&pile, effects, 10.0);
+        assert_eq!((found.rounds, found.cut_short), (1, false));
+        for particle in &particles {
+            // Four roundings of 1e-3.
+            assert!(particle.velocity.norm() < 1e-18, "{}", particle.velocity);
+        }
+        // Without a pull nothing says how high a bounce is.
+        assert!(settled(&pile, effects, 0.0).1.rounds > 1);
+    }
+
+    /// Two that go side by side at 1000 and approach by 1e-10 do so by rounding alone.
+    #[test]
+    fn an_approach_below_the_rounding_of_the_velocities_is_none() {
+        for (approach, impacts) in [(1e-10, 0), (1e-8, 1)] {
+            let pair = [
+                (1.0, [0.0; 3], [approach, 0.0, 1000.0]),
+                (1.0, [2.0, 0.0, 0.0], [0.0, 0.0, 1000.0]),
+            ];
+            let (_, _, notes) = settled(&pair, "[effects.contact]\nrestitution=1\n", 0.0);
+            assert_eq!(notes, impacts, "{approach}");
+        }
+    }
+
+    /// A heavy ball presses on a light one at 60 degrees, which gets half its speed, less than
+    /// the rest speed, and stops; a million times, or it stands after twenty stops and the heavy
+    /// one goes past it, along the tangent.
+    #[test]
+    fn a_ball_that_is_stopped_again_and_again_stands() {
+        let (cos, sin) = (0.5, 0.75_f64.sqrt());
+        let pair = [
+            (1e6, [0.0; 3], [1.0, 0.0, 0.0]),
+            (1.0, [2.0 * cos, 0.0, 2.0 * sin], [0.0; 3]),
+        ];
+        let effects = "[effects.contact]\nrestitution=0\n[effects.rest]\nspeed=0.8\n";
+        let (particles, found, _) = settled(&pair, effects, 0.0);
+        assert_eq!(found.rounds, u64::from(STOPS_MAX) + 1);
+        let along = Vector3::new(sin, 0.0, -cos) * sin;
+        // Twenty impulses of a few roundings.
+        assert!((particles[0].velocity - along).norm() < 1e-14);
+        assert_eq!(particles[1].velocity, Vector3::zeros());
+    }
+
+    /// `dE = u.l' + l'.A l'/2` with `u = -A l`, `l' = (1 + e) l`. For A = ((1, -1/2), (-1/2, 1))
+    /// and e = (1, 0) that is `l1 l2/2 - l2²/2`: a gain where l1 is the larger, and then the
+    /// smaller e is taken for both.
+    #[test]
+    fn touches_of_several_restitutions_keep_theirs_only_where_that_gains_no_energy() {
+        let matrix = [[1.0, -0.5], [-0.5, 1.0]];
+        let entry = |i: usize, j: usize| matrix[i][j];
+        for (stopping, wanted) in [([3.0, 1.0], [3.0, 1.0]), ([1.0, 3.0], [2.0, 3.0])] {
+            let rate = |i: usize| -(0..2).map(|j| matrix[i][j] * stopping[j]).sum::<f64>();
+            let found = reflected(&stopping, &[1.0, 0.0], &[rate(0), rate(1)], &entry);
+            assert_eq!(found, wanted);
+        }
+    }
 
     /// Two touches that share a body, impulses off by a millionth: `dE = u.l + l.A l/2` is none
     /// at e = 1, and `-(1 - e²)/2 l.A l` below.

@@ -209,3 +209,39 @@ fn far_squared(particle: &Particle) -> f64 {
     let rounding = 2.0 * ROUNDINGS * f64::EPSILON * particle.position.amax();
     rounding * (rounding + 4.0 * particle.radius)
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::engine::impulse::particles;
+    use crate::engine::spec::DragRule;
+
+    /// Mass, place and velocity of a sphere of radius 1.
+    pub(in super::super) type Sphere = (f64, [f64; 3], [f64; 3]);
+
+    /// The start of a scene: what it calls for, the spheres, and what touches.
+    pub(in super::super) fn start(
+        spheres: &[Sphere],
+        effects: &str,
+    ) -> (Phases, Vec<Particle>, Vec<Touch>) {
+        let body = |(place, (mass, position, velocity)): (usize, &Sphere)| {
+            format!(
+                "[[bodies]]\nname='b{place}'\nmass={mass:?}\nradius=1\n\
+                 position={position:?}\nvelocity={velocity:?}\n"
+            )
+        };
+        let bodies: String = spheres.iter().enumerate().map(body).collect();
+        let text = format!("name='x'\nduration=1\nsample_every=1\n{bodies}{effects}");
+        let scene = crate::scene::parse(&text, "x").unwrap();
+        let phases = Phases::of(&scene, DragRule::Exponential);
+        let particles = particles(&scene);
+        let mut touches = Vec::new();
+        touching(
+            &phases,
+            &particles,
+            &mut Neighbours::default(),
+            &mut touches,
+        );
+        (phases, particles, touches)
+    }
+}

@@ -177,6 +177,21 @@ mod tests {
         assert_eq!(work.shortest(2.0), 2e-9);
     }
 
+    /// Looks cost what impacts do: 64 along each way as much as one. So many that each search
+    /// takes a thousand rounds end bounces long before their number does.
+    #[test]
+    fn many_looks_count_as_impacts() {
+        let mut work = Work::of(2, 1.0, false);
+        work.charge_looks(2 * LOOKS - 1);
+        assert_eq!(work.impacts, 0);
+        for _ in 0..work.most / 1000 {
+            work.charge_looks(1000 * 2 * LOOKS);
+        }
+        assert!(!work.bounces_no_more());
+        work.charge_looks(1000 * 2 * LOOKS);
+        assert!(work.bounces_no_more());
+    }
+
     /// Events without time going on end after a hundred, those with it go on.
     #[test]
     fn events_that_stand_still_are_found_once() {
