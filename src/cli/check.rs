@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::ValueEnum;
 use rayon::prelude::*;
@@ -10,13 +11,18 @@ use rayon::prelude::*;
 use super::args::{LibraryArgs, chosen};
 use super::output::{progress, say};
 use crate::case::{Case, Library, REFERENCE};
+use crate::engine::external::Limits;
 use crate::engine::{DEFAULT_DT, EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::recording::read_trajectory_start;
 use crate::report::{blessing_text, check_junit, check_text, replay_text, write_blessing};
 use crate::study::check::{
-    Blessing, Candidate, Replay, Subject, bless, check, digests, own_candidate, profile, replay,
+    Blessing, Candidate, Program, Replay, Subject, TrajectoryFile, bless, check, digests,
+    own_candidate, profile, replay,
 };
+
+/// Whom a program is judged like if nothing is said.
+const DEFAULT_LIKE: &str = "lecture";
 
 /// How the report is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -36,9 +42,24 @@ pub(super) struct Args {
     /// Engines, separated by commas [default: all hand-written ones]
     #[arg(long = "engine", value_name = "NAMES", value_delimiter = ',')]
     engines: Vec<String>,
-    /// Judge by what is stored of another engine
+    /// A program of your own: a command with {bodies} {effects} {scene} {dt} {out} where it wants
+    /// them; see docs/your-own-solver.md
+    #[arg(long, value_name = "COMMAND", conflicts_with_all = ["engines", "trajectory", "replay"])]
+    solver: Option<String>,
+    /// A trajectory made elsewhere, of exactly one case
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["engines", "replay", "bless"])]
+    trajectory: Option<PathBuf>,
+    /// Judge by what is stored of this engine [default: the engine itself, else lecture]
     #[arg(long, value_name = "NAME")]
     like: Option<String>,
+    /// Time that a program may take on a case, s
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
+    limit: f64,
     #[command(flatten)]
     library: LibraryArgs,
     /// How to print
@@ -72,10 +93,21 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     if let Some(file) = &args.replay {
         return run_again(file, &cases, &specs, args);
     }
-    let candidates: Vec<Candidate> = specs
-        .iter()
-        .map(|spec| judged_as(spec, args.like.as_ref()))
-        .collect();
+    let own = own_solver(args, &cases)?;
+    let candidates: Vec<Candidate> = match &own {
+        Some(own) => {
+            let like = args.like.clone();
+            let like = like.unwrap_or_else(|| DEFAULT_LIKE.to_owned());
+            vec![Candidate {
+                subject: own.as_ref(),
+                like,
+            }]
+        }
+        None => specs
+            .iter()
+            .map(|spec| judged_as(spec, args.like.as_ref()))
+            .collect(),
+    };
     if args.digests {
         for (digest, case, solver) in digests(&cases, &candidates)? {
             say(format_args!("{digest}  {solver}/{case}"))?;
@@ -103,6 +135,38 @@ pub(super) fn run(args: &Args) -> Result<bool> {
         Format::Junit => say(check_junit(&report)?.trim_end())?,
     }
     Ok(report.holds)
+}
+
+/// The program or the file that is to be judged, if one is named.
+fn own_solver(args: &Args, cases: &[Case]) -> Result<Option<Box<dyn Subject>>> {
+    if let Some(command) = &args.solver {
+        let limits = Limits {
+            time: limit(args.limit)?,
+            ..Limits::default()
+        };
+        return Ok(Some(Box::new(Program::parse(command, limits)?)));
+    }
+    let Some(file) = &args.trajectory else {
+        return Ok(None);
+    };
+    if cases.len() != 1 {
+        return Err(Error::Argument {
+            argument: "trajectory",
+            found: file.display().to_string(),
+            remedy: "name the one case that it is a trajectory of".into(),
+        });
+    }
+    Ok(Some(Box::new(TrajectoryFile::new(file.clone()))))
+}
+
+fn limit(seconds: f64) -> Result<Duration> {
+    let limit = Duration::try_from_secs_f64(seconds).ok();
+    let limit = limit.filter(|limit| !limit.is_zero());
+    limit.ok_or_else(|| Error::Argument {
+        argument: "limit",
+        found: seconds.to_string(),
+        remedy: "give a number of seconds above 0".into(),
+    })
 }
 
 fn cases(names: &[String], library: &Library) -> Result<Vec<Case>> {

@@ -11,7 +11,7 @@ pub use bless::{Blessing, Change, bless};
 pub use derive::{Derived, derive};
 pub use judge::{Against, Comparison, Held, Row};
 pub use replay::{Replay, replay};
-pub use subject::{Own, Subject};
+pub use subject::{Own, Program, Subject, TrajectoryFile};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -184,8 +184,12 @@ fn check_case(case: &Case, library: &Library, candidate: &Candidate) -> Result<C
     };
     let run = match subject.record(scene, profile.dt) {
         Ok(run) => run,
+        Err(start @ (Error::SolverStart { .. } | Error::Read { .. })) => return Err(start),
         Err(fault) => {
-            check.fault = Some(fault.to_string());
+            check.fault = Some(match fault {
+                Error::Solver { message, .. } => message,
+                other => other.to_string(),
+            });
             return Ok(check);
         }
     };

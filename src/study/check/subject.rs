@@ -1,7 +1,12 @@
 //! What is checked: anything that computes a scene.
 
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::Instant;
+
+use crate::engine::external::{ExternalSolver, Limits, trajectory_file};
 use crate::engine::{EngineKind, EngineSpec, Precision, Simulation, StepGrid, drive, record};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::scene::Scene;
 
@@ -82,5 +87,96 @@ where
         let mut recording = drive(scene, &self.name, &mut simulation);
         recording.step = Some(grid.step);
         Ok(recording)
+    }
+}
+
+/// Cases on which a program ran out of time before it is given up, if it finished none.
+const TIMEOUTS_MAX: u32 = 2;
+
+/// A program that writes trajectories, as a solver.
+pub struct Program {
+    solver: ExternalSolver,
+    limits: Limits,
+    finished: AtomicBool,
+    timeouts: AtomicU32,
+}
+
+impl Program {
+    /// The program that a command line starts, with what it may take on a case.
+    ///
+    /// # Errors
+    /// As [`ExternalSolver::parse`].
+    pub fn parse(command: &str, limits: Limits) -> Result<Self> {
+        Ok(Self {
+            solver: ExternalSolver::parse(command, limits)?,
+            limits,
+            finished: AtomicBool::new(false),
+            timeouts: AtomicU32::new(0),
+        })
+    }
+}
+
+impl Subject for Program {
+    fn name(&self) -> &'static str {
+        "solver"
+    }
+
+    /// A program that hangs on its first cases is not started on the others: it would take its
+    /// time on each of them.
+    fn record(&self, scene: &Scene, dt: f64) -> Result<Recording> {
+        let timeouts = self.timeouts.load(Ordering::Relaxed);
+        if timeouts >= TIMEOUTS_MAX && !self.finished.load(Ordering::Relaxed) {
+            return Err(Error::Solver {
+                scene: scene.name.clone(),
+                message: format!(
+                    "not started: it ran out of time on {timeouts} cases and finished none"
+                ),
+            });
+        }
+        let begin = Instant::now();
+        let recorded = self.solver.record(self.name(), scene, dt);
+        match &recorded {
+            Ok(_) => self.finished.store(true, Ordering::Relaxed),
+            Err(_) if begin.elapsed() >= self.limits.time => {
+                self.timeouts.fetch_add(1, Ordering::Relaxed);
+            }
+            Err(_) => {}
+        }
+        recorded
+    }
+
+    fn tells_events(&self) -> bool {
+        false
+    }
+}
+
+/// A trajectory that was made elsewhere, as a solver of its one scene.
+pub struct TrajectoryFile {
+    name: String,
+    path: PathBuf,
+}
+
+impl TrajectoryFile {
+    /// The trajectory in that file.
+    #[must_use]
+    pub fn new(path: PathBuf) -> Self {
+        Self {
+            name: path.display().to_string(),
+            path,
+        }
+    }
+}
+
+impl Subject for TrajectoryFile {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn record(&self, scene: &Scene, _dt: f64) -> Result<Recording> {
+        trajectory_file(&self.name, scene, &self.path)
+    }
+
+    fn tells_events(&self) -> bool {
+        false
     }
 }
