@@ -13,6 +13,8 @@ mod exact_forces;
 mod example_solvers;
 #[cfg(unix)]
 mod external;
+mod faults;
+mod faulty;
 #[cfg(feature = "rapier")]
 mod geometry;
 mod hard;

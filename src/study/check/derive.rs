@@ -71,7 +71,7 @@ pub fn derive(
     let truth = case.truth.as_ref();
     let scales = Scales::of(scene, truth.unwrap_or(run));
     let rounding = Rounding::of(scene, subject, run, grid.step, &scales)?;
-    let against_truth = against_truth(case, subject, &runs, &scales, &rounding)?;
+    let against_truth = against_truth(case, &runs, &scales, &rounding)?;
     let until = scene.sample_time(rounding.samples - 1);
     let baseline = against_baseline(until, &rounding);
     let stored_until = against_truth.until.max(until);
@@ -233,8 +233,8 @@ fn moved_by_an_ulp(scene: &Scene, epsilon: f64, seed: u64) -> Scene {
 /// Every metric of a run that truth and the model say something about.
 fn measured(
     scene: &Scene,
-    subject: &dyn Subject,
     run: &Recording,
+    tells_events: bool,
     truth: Option<&Recording>,
     scales: &Scales,
 ) -> Vec<Measured> {
@@ -246,7 +246,7 @@ fn measured(
             truth,
             truth.comparable_samples(scene),
         ));
-        if subject.tells_events() {
+        if tells_events {
             all.extend(impacts(scene, run, truth));
         }
     }
@@ -256,7 +256,6 @@ fn measured(
 
 fn against_truth(
     case: &Case,
-    subject: &dyn Subject,
     runs: &[(f64, Recording)],
     scales: &Scales,
     rounding: &Rounding,
@@ -267,9 +266,15 @@ fn against_truth(
     let truth = whole.map(|truth| truth.up_to(samples, scene));
     let open = left_open(case, scales)?;
     let mut tolerances = Tolerances::up_to(scene.sample_time(samples - 1));
+    let tells_events = runs.iter().any(|(_, run)| !run.events.events().is_empty());
     let each: Vec<(f64, Vec<Measured>)> = runs
         .iter()
-        .map(|(h, run)| (*h, measured(scene, subject, run, truth.as_ref(), scales)))
+        .map(|(h, run)| {
+            (
+                *h,
+                measured(scene, run, tells_events, truth.as_ref(), scales),
+            )
+        })
         .collect();
     for (place, own) in each[0].1.iter().enumerate() {
         let errors: Vec<[f64; 2]> = each

@@ -93,10 +93,15 @@ pub(super) struct Trial<'a> {
     pub baseline: Option<&'a Recording>,
     pub rapier: Option<&'a Recording>,
     pub run: &'a Recording,
-    /// Whether the run tells its impacts.
-    pub tells_events: bool,
     /// Whether the profile is that of the very solver that ran.
     pub is_own: bool,
+}
+
+impl Trial<'_> {
+    /// Whether the run says what it met: trajectories made elsewhere do not.
+    fn tells_events(&self) -> bool {
+        !self.run.events.events().is_empty()
+    }
 }
 
 /// Holds a run against everything that its profile names.
@@ -183,7 +188,7 @@ fn against_truth(trial: &Trial, tolerances: &Tolerances) -> Comparison {
     let mut all = Vec::new();
     if let Some(truth) = &truth {
         all.push(apart(Metric::Position, run, truth, samples));
-        if trial.tells_events {
+        if trial.tells_events() {
             all.extend(impacts(scene, run, truth));
         }
     }
@@ -210,7 +215,7 @@ fn against_truth(trial: &Trial, tolerances: &Tolerances) -> Comparison {
         said.push(first_sample(trial, measured, known, sample, truth.as_ref()));
     }
     let held = worst_of(&rows);
-    if let (Held::Fails, true, Some(truth)) = (held, trial.tells_events, &truth) {
+    if let (Held::Fails, true, Some(truth)) = (held, trial.tells_events(), &truth) {
         let first = compare_events(scene, run, truth).first_disagreement;
         said.extend(first.map(|first| first_event(scene, &first)));
     }

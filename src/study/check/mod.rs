@@ -207,7 +207,6 @@ fn check_case(case: &Case, library: &Library, candidate: &Candidate) -> Result<C
         baseline: baseline.as_ref(),
         rapier: rapier.as_ref(),
         run: &run,
-        tells_events: subject.tells_events(),
         is_own: !is_engine || subject.name() == like,
     });
     Ok(check)

@@ -21,11 +21,6 @@ pub trait Subject: Sync {
     /// What kept it from that.
     fn record(&self, scene: &Scene, dt: f64) -> Result<Recording>;
 
-    /// Whether its recordings tell impacts.
-    fn tells_events(&self) -> bool {
-        true
-    }
-
     /// The relative distance of neighbouring numbers in its arithmetic.
     fn epsilon(&self) -> f64 {
         f64::EPSILON
@@ -144,10 +139,6 @@ impl Subject for Program {
         }
         recorded
     }
-
-    fn tells_events(&self) -> bool {
-        false
-    }
 }
 
 /// A trajectory that was made elsewhere, as a solver of its one scene.
@@ -174,9 +165,5 @@ impl Subject for TrajectoryFile {
 
     fn record(&self, scene: &Scene, _dt: f64) -> Result<Recording> {
         trajectory_file(&self.name, scene, &self.path)
-    }
-
-    fn tells_events(&self) -> bool {
-        false
     }
 }

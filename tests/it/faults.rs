@@ -1,0 +1,157 @@
+//! The checks checked: faults that people make must be caught, and where there is none, nothing
+//! may be.
+
+use std::fmt::Write;
+
+use carom::case::Library;
+use carom::engine::{EngineSpec, engine};
+use carom::study::check::{Against, CaseCheck, CheckReport, Held, check, own_candidate, suite};
+
+use crate::faulty::{Fault, Faulty};
+
+fn checked(fault: Fault) -> CheckReport {
+    suite(fault.name(), "lecture", |scene, grid| {
+        Faulty::new(fault, scene, grid)
+    })
+    .unwrap()
+}
+
+/// The first comparison that fails over all cases, truth before baseline before Rapier, and the
+/// earliest time at which one does.
+fn caught_by(report: &CheckReport) -> Option<(Against, &CaseCheck)> {
+    let failing = |against: Against| {
+        let mut checks = report.checks.iter();
+        checks.find(|check| {
+            let mut comparisons = check.comparisons.iter();
+            comparisons.any(|it| it.against == against && it.held == Held::Fails)
+        })
+    };
+    [Against::Truth, Against::Baseline, Against::Rapier]
+        .into_iter()
+        .find_map(|against| Some((against, failing(against)?)))
+}
+
+/// The plain solver of these tests is the engine `lecture`, so its faults are faults of that.
+#[test]
+fn without_a_fault_the_plain_solver_has_the_lectures_bits_and_holds() {
+    let report = checked(Fault::None);
+    let other: Vec<_> = report
+        .checks
+        .iter()
+        .filter(|check| !check.same_bits)
+        .collect();
+    assert!(other.is_empty(), "{other:#?}");
+    assert!(report.holds);
+}
+
+/// The table of `docs/faults.md`, made anew.
+fn table() -> String {
+    let mut table = String::from(
+        "# Faults that the check catches\n\n\
+         Each is planted into the lecture's steps (`tests/it/faulty.rs`), and `carom check` must \
+         notice. The table is\nmade by the test `every_fault_is_caught`; \
+         `CAROM_BLESS=1 cargo test every_fault_is_caught` writes it anew.\n\n\
+         | fault | caught by | on | how soon | cases that fail |\n|---|---|---|---|---|\n",
+    );
+    for fault in Fault::ALL {
+        let report = checked(fault);
+        let failed = report.checks.iter().filter(|check| !check.holds()).count();
+        let caught = caught_by(&report);
+        let (by, case, when) =
+            caught.map_or(("nothing".into(), "", String::new()), |(_, check)| {
+                let first = check.comparisons.iter().find(|it| it.held == Held::Fails);
+                let said = first.and_then(|it| it.said.first().cloned());
+                (
+                    check.caught_by().unwrap_or_default(),
+                    check.case.as_str(),
+                    said.unwrap_or_default(),
+                )
+            });
+        writeln!(
+            table,
+            "| {} | {by} | `{case}` | {} | {failed} of {} |",
+            fault.name(),
+            when.replace('|', "\\|"),
+            report.checks.len()
+        )
+        .unwrap();
+    }
+    table
+}
+
+/// Every fault fails, and the page says by what.
+#[test]
+fn every_fault_is_caught() {
+    let table = table();
+    println!("{table}");
+    assert!(!table.contains("| nothing |"), "{table}");
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/faults.md");
+    if std::env::var_os("CAROM_BLESS").is_some() {
+        std::fs::write(page, &table).unwrap();
+    }
+    let stored = std::fs::read_to_string(page).unwrap();
+    assert_eq!(stored, table, "docs/faults.md is out of date");
+}
+
+fn hand_written() -> Vec<EngineSpec> {
+    let names = ["lecture", "exact-drag", "verlet", "swept", "swept-4"];
+    names.map(|name| engine(name).unwrap()).to_vec()
+}
+
+/// Fifty times, with one thread to eight: the same report every time, and no alarm.
+#[test]
+fn fifty_runs_with_any_number_of_threads_raise_no_false_alarm() {
+    let library = Library::Embedded;
+    let names = [
+        "shot-2-61",
+        "cluster-8",
+        "kepler-e06",
+        "spring-chain",
+        "rack-break",
+    ];
+    let cases: Vec<_> = names.map(|name| library.case(name).unwrap()).into();
+    let specs = hand_written();
+    let candidates: Vec<_> = specs.iter().map(|spec| own_candidate(spec)).collect();
+    let mut first = None;
+    for run in 0..50 {
+        // Fibonacci hashing: thread counts in no order.
+        let threads = 1 + (run * 2_654_435_769_usize >> 7) % 8;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let report = pool
+            .build()
+            .unwrap()
+            .install(|| check(&cases, &library, &candidates, &|_| {}).unwrap());
+        assert!(report.holds, "run {run} with {threads} threads");
+        assert!(report.checks.iter().all(|check| check.same_bits));
+        assert_eq!(*first.get_or_insert_with(|| report.clone()), report);
+    }
+}
+
+/// Who is nearer to truth than the lecture is not asked to be like it.
+#[test]
+fn a_better_solver_judged_as_the_lecture_never_fails() {
+    let library = Library::Embedded;
+    let cases: Vec<_> = library.names().unwrap();
+    let cases: Vec<_> = cases
+        .iter()
+        .map(|name| library.case(name).unwrap())
+        .collect();
+    for name in ["swept", "swept-4", "adaptive"] {
+        let spec = engine(name).unwrap();
+        let mut candidate = own_candidate(&spec);
+        candidate.like = "lecture".to_owned();
+        let report = check(&cases, &library, &[candidate], &|_| {}).unwrap();
+        let failed: Vec<_> = report
+            .checks
+            .iter()
+            .filter(|check| !check.holds())
+            .collect();
+        assert!(failed.is_empty(), "{name}: {failed:#?}");
+        assert!(
+            report
+                .checks
+                .iter()
+                .any(|check| { check.comparisons.iter().any(|it| it.held == Held::Excused) })
+        );
+    }
+}
