@@ -9,15 +9,15 @@ use carom::study::check::{Against, CaseCheck, CheckReport, Held, check, own_cand
 
 use crate::faulty::{Fault, Faulty};
 
+/// As the engine `lecture` itself, which its own baseline judges also where truth is silent.
 fn checked(fault: Fault) -> CheckReport {
-    suite(fault.name(), "lecture", |scene, grid| {
+    suite("lecture", "lecture", |scene, grid| {
         Faulty::new(fault, scene, grid)
     })
     .unwrap()
 }
 
-/// The first comparison that fails over all cases, truth before baseline before Rapier, and the
-/// earliest time at which one does.
+/// The first case that fails against truth, else against the baseline, else against Rapier.
 fn caught_by(report: &CheckReport) -> Option<(Against, &CaseCheck)> {
     let failing = |against: Against| {
         let mut checks = report.checks.iter();
