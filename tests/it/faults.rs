@@ -5,7 +5,9 @@ use std::fmt::Write;
 
 use carom::case::Library;
 use carom::engine::{EngineSpec, engine};
-use carom::study::check::{Against, CaseCheck, CheckReport, Held, check, own_candidate, suite};
+use carom::study::check::{
+    Against, CaseCheck, CheckReport, Comparison, Held, check, own_candidate, suite,
+};
 
 use crate::faulty::{Fault, Faulty};
 
@@ -17,18 +19,21 @@ fn checked(fault: Fault) -> CheckReport {
     .unwrap()
 }
 
-/// The first case that fails against truth, else against the baseline, else against Rapier.
-fn caught_by(report: &CheckReport) -> Option<(Against, &CaseCheck)> {
+/// The case of the fewest bodies that fails against truth, else against the baseline, else
+/// against Rapier.
+fn caught_by(report: &CheckReport) -> Option<(&CaseCheck, &Comparison)> {
+    let library = Library::Embedded;
+    let bodies = |check: &CaseCheck| library.case(&check.case).unwrap().scene.bodies.len();
     let failing = |against: Against| {
-        let mut checks = report.checks.iter();
-        checks.find(|check| {
+        let checks = report.checks.iter().filter_map(|check| {
             let mut comparisons = check.comparisons.iter();
-            comparisons.any(|it| it.against == against && it.held == Held::Fails)
-        })
+            let failed = |it: &&Comparison| it.against == against && it.held == Held::Fails;
+            Some((check, comparisons.find(failed)?))
+        });
+        checks.min_by_key(|(check, _)| bodies(check))
     };
-    [Against::Truth, Against::Baseline, Against::Rapier]
-        .into_iter()
-        .find_map(|against| Some((against, failing(against)?)))
+    let mut all = [Against::Truth, Against::Baseline, Against::Rapier].into_iter();
+    all.find_map(failing)
 }
 
 /// The plain solver of these tests is the engine `lecture`, so its faults are faults of that.
@@ -56,22 +61,23 @@ fn table() -> String {
     for fault in Fault::ALL {
         let report = checked(fault);
         let failed = report.checks.iter().filter(|check| !check.holds()).count();
-        let caught = caught_by(&report);
-        let (by, case, when) =
-            caught.map_or(("nothing".into(), "", String::new()), |(_, check)| {
-                let first = check.comparisons.iter().find(|it| it.held == Held::Fails);
-                let said = first.and_then(|it| it.said.first().cloned());
+        let (by, case, when) = match caught_by(&report) {
+            None => ("nothing".to_owned(), "", String::new()),
+            Some((check, comparison)) => {
+                let row = comparison.rows.iter().find(|row| row.held == Held::Fails);
+                let metric = row.map_or("", |row| row.metric.name());
+                let when = comparison.first_at.map(|time| format!("t = {time} s"));
                 (
-                    check.caught_by().unwrap_or_default(),
+                    format!("{}: {metric}", comparison.against.word()),
                     check.case.as_str(),
-                    said.unwrap_or_default(),
+                    when.unwrap_or_default(),
                 )
-            });
+            }
+        };
         writeln!(
             table,
-            "| {} | {by} | `{case}` | {} | {failed} of {} |",
+            "| {} | {by} | `{case}` | {when} | {failed} of {} |",
             fault.name(),
-            when.replace('|', "\\|"),
             report.checks.len()
         )
         .unwrap();

@@ -79,6 +79,9 @@ pub struct Comparison {
     pub held: Held,
     /// Metric by metric.
     pub rows: Vec<Row>,
+    /// Time of the first sample that disagrees, s; none where none does, or where what disagrees
+    /// counts the run as a whole.
+    pub first_at: Option<f64>,
     /// What disagrees first, in sentences.
     pub said: Vec<String>,
     /// How far the run is from Rapier at most, and how far the baseline is; only of that comparison.
@@ -224,6 +227,7 @@ fn against_truth(trial: &Trial, tolerances: &Tolerances) -> Comparison {
         until: tolerances.until,
         held,
         rows,
+        first_at: first.map(|(sample, ..)| scene.sample_time(sample)),
         said,
         distances: None,
     }
@@ -353,6 +357,7 @@ fn against_baseline(trial: &Trial, tolerances: &Tolerances, stored: &Recording) 
         until: tolerances.until,
         held,
         rows,
+        first_at: first.map(|first| scene.sample_time(first)),
         said,
         distances: None,
     }
@@ -451,11 +456,13 @@ fn against_rapier(
     if baseline == Held::Excused {
         excuse(&mut rows, Held::Excused);
     }
+    let first = known.and_then(|known| change.first_beyond(known.tolerance));
     Comparison {
         against: Against::Rapier,
         until: tolerances.until,
         held: worst_of(&rows),
         rows,
+        first_at: first.map(|first| scene.sample_time(first)),
         said: Vec::new(),
         distances: Some([ours.worst().1.value, theirs.worst().1.value]),
     }
