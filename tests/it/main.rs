@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod cases;
+mod check;
 mod closed_forms;
 mod command_line;
 mod controls;

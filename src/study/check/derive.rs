@@ -106,6 +106,7 @@ pub fn samples_up_to(scene: &Scene, until: f64) -> usize {
 fn made(subject: &dyn Subject) -> String {
     let versions: Vec<_> = versions()
         .into_iter()
+        .filter(|(name, _)| subject.crates().contains(name))
         .map(|(name, version)| format!("{name} {version}"))
         .collect();
     let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);

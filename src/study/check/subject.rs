@@ -25,6 +25,11 @@ pub trait Subject: Sync {
     fn epsilon(&self) -> f64 {
         f64::EPSILON
     }
+
+    /// The crates of whose versions its results may depend.
+    fn crates(&self) -> &'static [&'static str] {
+        &["carom"]
+    }
 }
 
 impl Subject for EngineSpec {
@@ -42,6 +47,13 @@ impl Subject for EngineSpec {
                 f32::EPSILON.into()
             }
             EngineKind::Impulse(_) | EngineKind::Exact(_) | EngineKind::Rapier(_) => f64::EPSILON,
+        }
+    }
+
+    fn crates(&self) -> &'static [&'static str] {
+        match self.kind {
+            EngineKind::Impulse(_) | EngineKind::Exact(_) => &["carom"],
+            EngineKind::Rapier(_) => &["carom", "rapier3d"],
         }
     }
 }
