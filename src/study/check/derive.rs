@@ -17,7 +17,7 @@ const TWINS: u64 = 8;
 const ROUNDINGS: f64 = 4.0;
 /// Positions are held against truth as long as no step of the ladder is off by more than this
 /// share of the scene's length: past that, they say nothing about a solver.
-const HORIZON: f64 = 0.1;
+pub(super) const HORIZON: f64 = 0.1;
 /// And against the stored recording as long as rounding leaves three eighths of the digits: a
 /// millionth of that length in double precision.
 const ROUNDING_HORIZON: f64 = 0.375;

@@ -2,12 +2,16 @@
 
 use serde::Serialize;
 
-use super::derive::samples_up_to;
+use super::derive::{HORIZON, samples_up_to};
 use super::measure::{Measured, Scales, apart, impacts, kept};
 use crate::case::{Case, Metric, Profile, Tolerance, Tolerances, thinning};
 use crate::compare::{Disagreement, Sizes, compare_events};
 use crate::recording::{Event, EventKind, Recording};
 use crate::scene::Scene;
+
+/// Stored samples after the one at which a run leaves the baseline: an impact that comes late or
+/// early is over by then, and a wrong one shows.
+const LATER: usize = 2;
 
 /// What a run is held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -336,16 +340,8 @@ fn against_baseline(trial: &Trial, tolerances: &Tolerances, stored: &Recording) 
     let mut said = Vec::new();
     let held = first.map_or(Held::Holds, |first| {
         let time = scene.sample_time(first);
-        if is_vouched_for(trial, time) && is_better(trial) {
-            said.push(format!(
-                "leaves the baseline by t = {time} s, and is nearer to truth than the baseline is"
-            ));
-            return Held::Excused;
-        }
-        if !trial.is_own && !is_vouched_for(trial, time) {
-            said.push(format!(
-                "leaves the baseline by t = {time} s, where truth no longer says who is right"
-            ));
+        if let Some(reason) = excuse_for(trial, first) {
+            said.push(format!("leaves the baseline by t = {time} s, {reason}"));
             return Held::Excused;
         }
         said.push(leaves(trial, &scene, &all, first));
@@ -384,33 +380,65 @@ fn leaves(trial: &Trial, scene: &Scene, all: &[(Measured, f64)], first: usize) -
     )
 }
 
-/// Whether truth is compared at that time.
-fn is_vouched_for(trial: &Trial, time: f64) -> bool {
-    let known = trial.profile.truth.as_ref();
-    trial.case.truth.is_some() && known.is_some_and(|known| time <= known.until)
+/// Why a run may leave the baseline at a stored sample, if it may.
+///
+/// Before the horizon of the profile: because it is nearer to truth all along. Past it, as long as
+/// the baseline itself is near truth: because it is nearer there, over the next samples too.
+/// Farther on a distance from truth says nothing, and a solver that is judged as another one may
+/// differ; the engine itself may not.
+fn excuse_for(trial: &Trial, first: usize) -> Option<&'static str> {
+    const NEARER: &str = "and is nearer to truth than the baseline is";
+    let nobody_knows = (!trial.is_own).then_some("where nobody can say who is right");
+    let known = trial.case.truth.as_ref().zip(trial.profile.truth.as_ref());
+    let Some((truth, known)) = known else {
+        return nobody_knows;
+    };
+    let scene = &trial.case.scene;
+    let sample = first * thinning(scene);
+    if scene.sample_time(sample) <= known.until {
+        return is_better(trial).then_some(NEARER);
+    }
+    let errors = errors(trial, first + LATER);
+    let Some((ours, theirs)) = errors.filter(|_| sample < truth.comparable_samples(scene)) else {
+        return nobody_knows;
+    };
+    let horizon = HORIZON * Scales::of(scene, truth).length;
+    match theirs.points.get(first) {
+        Some(at) if at.value <= horizon => {}
+        _ => return nobody_knows,
+    }
+    let from_there = |error: &Measured| -> f64 {
+        let points = error.points.iter().skip(first);
+        points.map(|at| at.value).sum()
+    };
+    (from_there(&ours) < from_there(&theirs)).then_some(NEARER)
 }
 
-/// Whether the run is nearer to truth than the baseline, up to every sample of the comparison with
-/// truth.
-fn is_better(trial: &Trial) -> bool {
+/// The errors of the run and of the baseline against truth at stored samples: up to the horizon of
+/// the profile, and up to this one at least, as far as all of them go.
+fn errors(trial: &Trial, sample: usize) -> Option<(Measured, Measured)> {
     let known = trial.case.truth.as_ref().zip(trial.profile.truth.as_ref());
-    let Some(((truth, known), stored)) = known.zip(trial.baseline) else {
-        return false;
-    };
-    let every = thinning(&trial.case.scene);
+    let ((truth, known), stored) = known.zip(trial.baseline)?;
+    let scene = &trial.case.scene;
+    let every = thinning(scene);
+    let vouched = truth.comparable_samples(scene).div_ceil(every);
+    let samples = samples_up_to(&scene.every(every), known.until).max(sample + 1);
+    let samples = samples.min(stored.sample_count()).min(vouched);
     let (run, truth) = (trial.run.every(every), truth.every(every));
-    let thinned = trial.case.scene.every(every);
-    let samples = samples_up_to(&thinned, known.until).min(stored.sample_count());
-    if run.sample_count() < samples {
-        return false;
-    }
+    let error = |of: &Recording| apart(Metric::Position, of, &truth, samples);
+    (run.sample_count() >= samples).then(|| (error(&run), error(stored)))
+}
+
+/// Whether the run is nearer to truth than the baseline, up to every sample before the horizon of
+/// the profile.
+fn is_better(trial: &Trial) -> bool {
     let room = trial.profile.baseline.as_ref();
     let room = room.and_then(|known| known.of(Metric::Position));
     let room = room.map_or(0.0, |known| known.tolerance);
-    let error = |of: &Recording| apart(Metric::Position, of, &truth, samples);
-    let (ours, theirs) = (error(&run), error(stored));
-    let mut pairs = ours.so_far().zip(theirs.so_far());
-    pairs.all(|(ours, theirs)| ours <= theirs + room)
+    errors(trial, 0).is_some_and(|(ours, theirs)| {
+        let mut pairs = ours.so_far().zip(theirs.so_far());
+        pairs.all(|(ours, theirs)| ours <= theirs + room)
+    })
 }
 
 /// Gives failed rows the verdict of their comparison.
