@@ -31,11 +31,12 @@ enum Format {
     Text,
     /// All that was measured
     Json,
-    /// JUnit's XML, for the pages of continuous integration
+    /// XML as by `JUnit`, for the pages of continuous integration
     Junit,
 }
 
 #[derive(Debug, clap::Args)]
+#[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(super) struct Args {
     /// Names of cases [default: all]
     cases: Vec<String>,

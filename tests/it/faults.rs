@@ -121,7 +121,7 @@ fn fifty_runs_with_any_number_of_threads_raise_no_false_alarm() {
     let mut first = None;
     for run in 0..50 {
         // Fibonacci hashing: thread counts in no order.
-        let threads = 1 + (run * 2_654_435_769_usize >> 7) % 8;
+        let threads = 1 + ((run * 2_654_435_769_usize) >> 7) % 8;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let report = pool
             .build()

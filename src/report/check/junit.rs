@@ -1,4 +1,4 @@
-//! A check as JUnit's XML, which the pages of continuous integration show.
+//! A check as the XML of `JUnit`, which the pages of continuous integration show.
 
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ struct Case {
     details: String,
 }
 
-/// The report of a check as JUnit's XML: a suite a solver, a test a case.
+/// The report of a check as the XML of `JUnit`: a suite a solver, a test a case.
 ///
 /// # Errors
 /// A fault of the template.

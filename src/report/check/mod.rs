@@ -1,4 +1,4 @@
-//! What a check found: for people, and for machines that read JUnit's XML.
+//! What a check found: for people, and for machines that read the XML of `JUnit`.
 
 mod blessing;
 mod junit;

@@ -64,26 +64,6 @@ impl CaseCheck {
         let failed = |comparison: &Comparison| comparison.held == Held::Fails;
         self.fault.is_none() && !self.comparisons.iter().any(failed)
     }
-
-    /// What failed first: the comparison and the metric, for a table.
-    #[must_use]
-    pub fn caught_by(&self) -> Option<String> {
-        if self.fault.is_some() {
-            return Some("does not finish".to_owned());
-        }
-        let failed = self.comparisons.iter();
-        let failed = failed.filter(|comparison| comparison.held == Held::Fails);
-        failed
-            .filter_map(|comparison| {
-                let row = comparison.rows.iter().find(|row| row.held == Held::Fails)?;
-                Some(format!(
-                    "{} ({})",
-                    comparison.against.word(),
-                    row.metric.name()
-                ))
-            })
-            .next()
-    }
 }
 
 /// Every case on every solver, checked.
