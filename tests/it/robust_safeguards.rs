@@ -2,9 +2,9 @@
 
 use carom::case::Library;
 use carom::compare::metrics;
-use carom::engine::{engine, prepare};
+use carom::engine::{drive, engine, prepare};
 use carom::physics::{BodyState, Vector3};
-use carom::recording::{Concession, ConcessionKind, EventLog, Recording};
+use carom::recording::{Account, Concession, ConcessionKind, EventLog, Recording};
 use carom::scene::{Attraction, Body, Cushions, Drag, Effects, Rest, Spring};
 
 use crate::robust::{contact, crowded, floor, gains, robust};
@@ -52,6 +52,33 @@ fn bodies_that_turned_back_meet_nothing_on_the_way_they_did_not_go() {
         // Eight steps of a few roundings.
         assert!((at.kinetic_energy / measured[0].kinetic_energy - 1.0).abs() < 1e-14);
     }
+}
+
+/// A stiff dumbbell on the floor: it falls as a whole, but the floor that holds its lower end lets
+/// the upper one sink, and nothing is found that the spring leads to. The push that was tried is
+/// taken back with the step: nothing moved, and no wall gave any momentum.
+#[test]
+fn a_step_that_is_given_up_for_its_pushes_leaves_none_behind() {
+    let (mut bodies, mut effects) = unpayable(floor(5.0, 0.5));
+    effects.springs[0].rest_length = 2.0;
+    for (body, y) in bodies.iter_mut().zip([-4.5, -2.5]) {
+        (body.radius, body.position) = (0.5, [0.0, y, 0.0]);
+    }
+    let scene = scene(1.0, 0.125, bodies, effects);
+    let mut simulation = prepare(&scene, &engine("robust").unwrap(), 0.125).unwrap();
+    assert!(simulation.keep_ledger());
+    let recording = drive(&scene, "robust", simulation.as_mut());
+    assert_eq!(conceded(&recording, ConcessionKind::TurnedBack), 8);
+    for (state, body) in recording
+        .samples()
+        .flatten()
+        .zip(scene.bodies.iter().cycle())
+    {
+        assert_eq!(state.position, Vector3::from(body.position));
+        assert_eq!(state.velocity, Vector3::zeros());
+    }
+    let pushed = simulation.ledger().unwrap().of(Account::Cushions).momentum;
+    assert_eq!(pushed, Vector3::zeros());
 }
 
 /// Forces and places beyond the largest double: nothing is found that they lead to, bodies turn
@@ -180,13 +207,13 @@ fn a_heavy_ball_catches_up_under_drag_with_a_light_one_that_was_as_fast() {
 }
 
 /// Alone under drag: from speed v at rate c a ball stops at r after `ln(v/r)/c`, `(v - r)/c` on.
-/// One that is slower than r from the start stops at once.
+/// One that is slower than r from the start stops at once, whether anything slows it or not.
 #[test]
 fn a_ball_with_nothing_to_meet_still_stops_at_the_rest_speed() {
-    for (speed, goes) in [(3.0, 4.0), (0.5, 0.0)] {
+    for (speed, coefficient, goes) in [(3.0, 1.0, 4.0), (0.5, 1.0, 0.0), (0.5, 0.0, 0.0)] {
         let bodies = vec![body("a", 2.0, 0.5, [0.0; 3], [speed, 0.0, 0.0])];
         let effects = Effects {
-            drag: Some(Drag { coefficient: 1.0 }),
+            drag: Some(Drag { coefficient }),
             rest: Some(Rest { speed: 1.0 }),
             ..Effects::default()
         };
@@ -225,6 +252,12 @@ fn an_impact_at_the_instant_of_a_sample_is_in_it() {
     let after = recording.sample(8).iter().map(|state| state.velocity.x);
     assert_eq!(before.collect::<Vec<_>>(), [1.0, 0.0]);
     assert_eq!(after.collect::<Vec<_>>(), [0.0, 1.0]);
+    // Steps before it are known to meet nothing: not one for each looks at the pair.
+    assert!(
+        recording.work.pair_tests < 8,
+        "{}",
+        recording.work.pair_tests
+    );
 }
 
 /// What was known of the old states is forgotten with them: that nothing is near, and that there
