@@ -43,7 +43,7 @@ impl Blessing {
 /// Derives a solver's profile on a case anew and compares it with what is stored.
 ///
 /// # Errors
-/// As [`derive`].
+/// As [`derive()`].
 pub fn bless(case: &Case, library: &Library, candidate: &Candidate, dt: f64) -> Result<Blessing> {
     let like = &candidate.like;
     let rapier = rapier(library, &case.scene, like)?;
