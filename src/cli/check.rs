@@ -17,8 +17,8 @@ use crate::error::{Error, Result};
 use crate::recording::read_trajectory_start;
 use crate::report::{blessing_text, check_junit, check_text, replay_text, write_blessing};
 use crate::study::check::{
-    Blessing, Candidate, Program, Replay, Subject, TrajectoryFile, bless, check, digests,
-    own_candidate, profile, replay,
+    Blessing, Candidate, Program, Replay, Subject, TrajectoryFile, bless, check, digests, profile,
+    replay,
 };
 
 /// Whom a program is judged like if nothing is said.
@@ -95,19 +95,10 @@ pub(super) fn run(args: &Args) -> Result<bool> {
         return run_again(file, &cases, &specs, args);
     }
     let own = own_solver(args, &cases)?;
+    let like = args.like.as_deref();
     let candidates: Vec<Candidate> = match &own {
-        Some(own) => {
-            let like = args.like.clone();
-            let like = like.unwrap_or_else(|| DEFAULT_LIKE.to_owned());
-            vec![Candidate {
-                subject: own.as_ref(),
-                like,
-            }]
-        }
-        None => specs
-            .iter()
-            .map(|spec| judged_as(spec, args.like.as_ref()))
-            .collect(),
+        Some(own) => vec![Candidate::like(own.as_ref(), like.unwrap_or(DEFAULT_LIKE))],
+        None => specs.iter().map(|spec| judged_as(spec, like)).collect(),
     };
     if args.digests {
         for (digest, case, solver) in digests(&cases, &candidates)? {
@@ -193,30 +184,24 @@ fn specs(names: &[String]) -> Result<Vec<EngineSpec>> {
         .collect())
 }
 
-fn judged_as<'a>(subject: &'a dyn Subject, like: Option<&String>) -> Candidate<'a> {
-    match like {
-        Some(like) => Candidate {
-            subject,
-            like: like.clone(),
-        },
-        None => own_candidate(subject),
-    }
+fn judged_as<'a>(spec: &'a EngineSpec, like: Option<&str>) -> Candidate<'a> {
+    like.map_or_else(|| Candidate::own(spec), |like| Candidate::like(spec, like))
 }
 
 /// `--replay`: one case, one engine, one file.
 fn run_again(file: &Path, cases: &[Case], specs: &[EngineSpec], args: &Args) -> Result<bool> {
-    let one = |argument: &'static str, remedy: &str| Error::Argument {
-        argument,
+    let one = |remedy: &str| Error::Argument {
+        argument: "replay",
         found: file.display().to_string(),
         remedy: remedy.to_owned(),
     };
     let [case] = cases else {
-        return Err(one("replay", "name the one case that it is a recording of"));
+        return Err(one("name the one case that it is a recording of"));
     };
     let spec = match (specs, args.engines.is_empty()) {
         ([spec], _) => spec,
         (_, true) => &specs[0],
-        (_, false) => return Err(one("replay", "name the one engine that made it")),
+        (_, false) => return Err(one("name the one engine that made it")),
     };
     let scene = &case.scene;
     let table = File::open(file).map_err(|wrong| Error::read(file, wrong))?;

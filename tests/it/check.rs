@@ -3,25 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use carom::case::{Library, Metric};
 use carom::study::check::{Replay, replay};
 
-/// Exit code, standard output and standard error.
-fn carom(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("carom").unwrap();
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code().unwrap(),
-        text(output.stdout),
-        text(output.stderr),
-    )
-}
+use crate::command::carom;
 
 /// A folder with a copy of some reference cases in `cases`.
 fn copied(names: &[&str]) -> tempfile::TempDir {
@@ -198,6 +183,22 @@ fn a_case_of_ones_own_is_blessed_and_then_checked() {
     );
     assert!(known.of(Metric::Momentum).is_some());
     assert!(known.of(Metric::Penetration).is_none(), "nothing can touch");
+}
+
+/// A stored recording that is not the one whose digest is stored tells nothing about anybody.
+#[test]
+fn a_baseline_that_was_tampered_with_is_told() {
+    let scratch = copied(&["inelastic-e05"]);
+    let file = "inelastic-e05/baseline-lecture.csv";
+    edit(scratch.path(), file, |text| {
+        let (before, last) = text.trim_end().rsplit_once(',').unwrap();
+        let moved = last.parse::<f64>().unwrap() + 1e-15;
+        format!("{before},{moved:?}\n")
+    });
+    let arguments = ["check", "--reference", "cases", "--engine", "lecture"];
+    let (code, _, said) = carom(scratch.path(), &arguments);
+    assert_eq!(code, 2);
+    assert!(said.contains("is not the recording whose digest"), "{said}");
 }
 
 #[test]

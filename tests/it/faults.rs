@@ -6,7 +6,7 @@ use std::fmt::Write;
 use carom::case::Library;
 use carom::engine::{EngineSpec, engine};
 use carom::study::check::{
-    Against, CaseCheck, CheckReport, Comparison, Held, check, own_candidate, suite,
+    Against, Candidate, CaseCheck, CheckReport, Comparison, Held, check, suite,
 };
 
 use crate::faulty::{Fault, Faulty};
@@ -117,7 +117,7 @@ fn fifty_runs_with_any_number_of_threads_raise_no_false_alarm() {
     ];
     let cases: Vec<_> = names.map(|name| library.case(name).unwrap()).into();
     let specs = hand_written();
-    let candidates: Vec<_> = specs.iter().map(|spec| own_candidate(spec)).collect();
+    let candidates: Vec<_> = specs.iter().map(|spec| Candidate::own(spec)).collect();
     let mut first = None;
     for run in 0..50 {
         // Fibonacci hashing: thread counts in no order.
@@ -144,8 +144,7 @@ fn a_better_solver_judged_as_the_lecture_never_fails() {
         .collect();
     for name in ["swept", "swept-4", "adaptive"] {
         let spec = engine(name).unwrap();
-        let mut candidate = own_candidate(&spec);
-        candidate.like = "lecture".to_owned();
+        let candidate = Candidate::like(&spec, "lecture");
         let report = check(&cases, &library, &[candidate], &|_| {}).unwrap();
         let failed: Vec<_> = report
             .checks

@@ -5,6 +5,7 @@ mod bad_input;
 mod cases;
 mod check;
 mod closed_forms;
+mod command;
 mod command_line;
 mod controls;
 mod departures;

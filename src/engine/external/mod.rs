@@ -65,6 +65,12 @@ impl ExternalSolver {
         Ok(Self { command, limits })
     }
 
+    /// What it may take on one scene.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
     /// Runs the solver on a scene and reads what it wrote. `dt` is the largest step, s; the step
     /// that the solver is told divides the time between samples.
     ///

@@ -1,6 +1,6 @@
 //! Tolerances, derived from runs: what a solver does at other steps, and what one ulp does.
 
-use super::measure::{Measured, Scales, apart, impacts, kept};
+use super::measure::{Measured, Scales, apart, measured};
 use super::subject::Subject;
 use crate::case::{Case, Evidence, Metric, Profile, Tolerance, Tolerances, thinning};
 use crate::engine::{StepGrid, engine, record, versions};
@@ -12,8 +12,8 @@ use crate::study::stopwatch::Dice;
 
 /// Scenes moved by one ulp.
 const TWINS: u64 = 8;
-/// Roundings that a step may commit on a coordinate more than another way to write it does: the
-/// position and the velocity are each a sum, a product and a quotient.
+/// Roundings of one step on a number, which another way to write the step commits elsewhere: a kick
+/// `v + dt ((1/m) F)` has a quotient, two products and a sum, a drift fewer.
 const ROUNDINGS: f64 = 4.0;
 /// Positions are held against truth as long as no step of the ladder is off by more than this
 /// share of the scene's length: past that, they say nothing about a solver.
@@ -229,30 +229,6 @@ fn moved_by_an_ulp(scene: &Scene, epsilon: f64, seed: u64) -> Scene {
         }
     }
     twin
-}
-
-/// Every metric of a run that truth and the model say something about.
-fn measured(
-    scene: &Scene,
-    run: &Recording,
-    tells_events: bool,
-    truth: Option<&Recording>,
-    scales: &Scales,
-) -> Vec<Measured> {
-    let mut all = Vec::new();
-    if let Some(truth) = truth {
-        all.push(apart(
-            Metric::Position,
-            run,
-            truth,
-            truth.comparable_samples(scene),
-        ));
-        if tells_events {
-            all.extend(impacts(scene, run, truth));
-        }
-    }
-    all.extend(kept(scene, run, scales));
-    all
 }
 
 fn against_truth(

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::derive::{HORIZON, samples_up_to};
-use super::measure::{Measured, Scales, apart, impacts, kept};
+use super::measure::{Measured, Point, Scales, apart, measured};
 use crate::case::{Case, Metric, Profile, Tolerance, Tolerances, thinning};
 use crate::compare::{Disagreement, Sizes, compare_events};
 use crate::recording::{Event, EventKind, Recording};
@@ -192,14 +192,7 @@ fn against_truth(trial: &Trial, tolerances: &Tolerances) -> Comparison {
     let truth = trial.case.truth.as_ref();
     let truth = truth.map(|truth| truth.up_to(samples, scene));
     let scales = Scales::of(scene, trial.case.truth.as_ref().unwrap_or(run));
-    let mut all = Vec::new();
-    if let Some(truth) = &truth {
-        all.push(apart(Metric::Position, run, truth, samples));
-        if trial.tells_events() {
-            all.extend(impacts(scene, run, truth));
-        }
-    }
-    all.extend(kept(scene, run, &scales));
+    let all = measured(scene, run, trial.tells_events(), truth.as_ref(), &scales);
     let judged = all
         .iter()
         .filter_map(|measured| Some((measured, tolerances.of(measured.metric)?)));
@@ -465,7 +458,7 @@ fn against_rapier(
     let pairs = ours.points.iter().zip(&theirs.points);
     let changes = pairs.map(|(ours, theirs)| {
         let signed = ours.value - theirs.value;
-        super::measure::Point {
+        Point {
             value: signed.abs(),
             signed,
             place: ours.place,

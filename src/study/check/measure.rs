@@ -144,10 +144,31 @@ impl Scales {
     }
 }
 
+/// Every metric of a run that truth and the model say something about, as far as the truth goes;
+/// impacts where the run tells them.
+#[must_use]
+pub fn measured(
+    scene: &Scene,
+    run: &Recording,
+    tells_events: bool,
+    truth: Option<&Recording>,
+    scales: &Scales,
+) -> Vec<Measured> {
+    let mut all = Vec::new();
+    if let Some(truth) = truth {
+        let samples = truth.comparable_samples(scene);
+        all.push(apart(Metric::Position, run, truth, samples));
+        if tells_events {
+            all.extend(impacts(scene, run, truth));
+        }
+    }
+    all.extend(kept(scene, run, scales));
+    all
+}
+
 /// What the model of the scene keeps, and does not: its change since the start; and how deep
 /// bodies stand in each other.
-#[must_use]
-pub fn kept(scene: &Scene, run: &Recording, scales: &Scales) -> Vec<Measured> {
+fn kept(scene: &Scene, run: &Recording, scales: &Scales) -> Vec<Measured> {
     let all = metrics(scene, run);
     let start = all[0];
     let effects = &scene.effects;
@@ -182,8 +203,7 @@ pub fn kept(scene: &Scene, run: &Recording, scales: &Scales) -> Vec<Measured> {
 }
 
 /// How the impacts of a run match those of the truth, as far as the truth goes.
-#[must_use]
-pub fn impacts(scene: &Scene, run: &Recording, truth: &Recording) -> Vec<Measured> {
+fn impacts(scene: &Scene, run: &Recording, truth: &Recording) -> Vec<Measured> {
     let due = truth.events.impacts().count();
     if due == 0 {
         return Vec::new();

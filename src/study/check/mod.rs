@@ -16,7 +16,7 @@ pub use subject::{Own, Program, Subject, TrajectoryFile};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::case::{Case, Library, Profile};
+use crate::case::{Case, Library, Profile, baseline_file, thinning};
 use crate::engine::{DEFAULT_DT, Simulation, StepGrid, engine};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
@@ -32,6 +32,23 @@ pub struct Candidate<'a> {
     pub subject: &'a dyn Subject,
     /// The name of the profile in `expected.toml`.
     pub like: String,
+}
+
+impl<'a> Candidate<'a> {
+    /// Judged by the profile of its own name, as an engine is unless another is named.
+    #[must_use]
+    pub fn own(subject: &'a dyn Subject) -> Self {
+        Self::like(subject, subject.name())
+    }
+
+    /// Judged by the profile of that name.
+    #[must_use]
+    pub fn like(subject: &'a dyn Subject, like: &str) -> Self {
+        Self {
+            subject,
+            like: like.to_owned(),
+        }
+    }
 }
 
 /// One case on one solver, checked.
@@ -73,15 +90,6 @@ pub struct CheckReport {
     pub holds: bool,
     /// Solver by solver, case by case.
     pub checks: Vec<CaseCheck>,
-}
-
-/// The name under which a solver is judged if none is said: its own, if it is an engine's.
-#[must_use]
-pub fn own_candidate(subject: &dyn Subject) -> Candidate<'_> {
-    Candidate {
-        like: subject.name().to_owned(),
-        subject,
-    }
 }
 
 /// Checks every candidate on every case, several at a time; the order of the report is that of
@@ -179,6 +187,20 @@ fn check_case(case: &Case, library: &Library, candidate: &Candidate) -> Result<C
         check.fault = Some(run.outcome.describe(scene).to_string());
     }
     let baseline = library.baseline(scene, like)?;
+    if check.same_bits
+        && baseline
+            .as_ref()
+            .is_some_and(|stored| !is_part_of(scene, stored, &run))
+    {
+        return Err(Error::Profile {
+            case: scene.name.clone(),
+            message: format!(
+                "{} is not the recording whose digest stands in expected.toml; restore it, or \
+                 store it anew with `carom check --bless`",
+                baseline_file(like)
+            ),
+        });
+    }
     let rapier = rapier(library, scene, like)?;
     let is_engine = engine(like).is_ok();
     check.comparisons = judge(&Trial {
@@ -190,6 +212,15 @@ fn check_case(case: &Case, library: &Library, candidate: &Candidate) -> Result<C
         is_own: !is_engine || subject.name() == like,
     });
     Ok(check)
+}
+
+/// Whether a stored recording has the bits of a run, as far as it goes.
+fn is_part_of(scene: &Scene, stored: &Recording, run: &Recording) -> bool {
+    let every = thinning(scene);
+    let run = run
+        .every(every)
+        .up_to(stored.sample_count(), &scene.every(every));
+    stored.digest() == run.digest()
 }
 
 /// The whole suite on a simulation of your own, for your own `cargo test`: every reference case
@@ -216,11 +247,12 @@ pub fn suite<S: Simulation>(
     let cases = names.iter().map(|name| library.case(name));
     let cases = cases.collect::<Result<Vec<_>>>()?;
     let subject = Own::new(name, make);
-    let candidate = Candidate {
-        subject: &subject,
-        like: like.to_owned(),
-    };
-    check(&cases, &library, &[candidate], &|_| {})
+    check(
+        &cases,
+        &library,
+        &[Candidate::like(&subject, like)],
+        &|_| {},
+    )
 }
 
 /// The digest of every case on every solver, without judging.

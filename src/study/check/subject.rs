@@ -103,7 +103,6 @@ const TIMEOUTS_MAX: u32 = 2;
 /// A program that writes trajectories, as a solver.
 pub struct Program {
     solver: ExternalSolver,
-    limits: Limits,
     finished: AtomicBool,
     timeouts: AtomicU32,
 }
@@ -116,7 +115,6 @@ impl Program {
     pub fn parse(command: &str, limits: Limits) -> Result<Self> {
         Ok(Self {
             solver: ExternalSolver::parse(command, limits)?,
-            limits,
             finished: AtomicBool::new(false),
             timeouts: AtomicU32::new(0),
         })
@@ -144,7 +142,7 @@ impl Subject for Program {
         let recorded = self.solver.record(self.name(), scene, dt);
         match &recorded {
             Ok(_) => self.finished.store(true, Ordering::Relaxed),
-            Err(_) if begin.elapsed() >= self.limits.time => {
+            Err(_) if begin.elapsed() >= self.solver.limits().time => {
                 self.timeouts.fetch_add(1, Ordering::Relaxed);
             }
             Err(_) => {}
