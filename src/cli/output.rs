@@ -63,8 +63,8 @@ pub(super) fn spinner(message: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
-/// On Ctrl-C and its kin, leaves complete files only and no solver running, and ends as shells expect: 128 plus the
-/// number of the signal.
+/// On Ctrl-C and its kin, leaves complete files only and no solver running, and ends as shells
+/// expect: 128 plus the number of the signal.
 #[cfg(unix)]
 pub(super) fn tidy_up_on_interrupt() -> Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};

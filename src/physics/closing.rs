@@ -108,4 +108,48 @@ mod tests {
         assert_eq!(throw(10.0, -1.0, 0.0, 0.0), Search::Open);
         assert_eq!(throw(10.0, 0.1, 0.0, 0.0), Search::Open);
     }
+
+    /// Two surfaces that touch and part do not close, also where they have no speed yet.
+    #[test]
+    fn what_touches_and_bends_away_stays_open() {
+        let at = |t: f64| Opening {
+            width: t * t,
+            rate: 2.0 * t,
+            bend: 1.0,
+        };
+        assert_eq!(first_closing(1.0, 1e-14, at), Search::Open);
+    }
+
+    /// A search that would take more steps than it has says how far it came.
+    #[test]
+    fn a_search_that_rests_says_how_far_the_gap_is_open() {
+        let slow = |_: f64| Opening {
+            width: 1.0,
+            rate: -1.0,
+            bend: 1e8,
+        };
+        // 2/(sqrt(1 + 2e8) - 1), two hundred times.
+        let step = 2.0 / ((1.0 + 2e8_f64).sqrt() - 1.0);
+        let Search::OpenUntil(time) = first_closing(1.0, 1e-14, slow) else {
+            panic!("not at rest");
+        };
+        assert!((time / step - 200.0).abs() < 1e-9, "{time}");
+    }
+
+    /// From a thousandth away four steps of Newton's arrive at the last digit; where the gap
+    /// opens, or a step would not be shorter than the one before, none is made.
+    #[test]
+    fn newtons_steps_settle_the_last_digits() {
+        let at = |t: f64| Opening {
+            width: 2.0 - 3.0 * t + t * t,
+            rate: 2.0 * t - 3.0,
+            bend: 2.0,
+        };
+        for start in [0.999, 1.001] {
+            let time = polished(start, 10.0, &at);
+            assert!((time - 1.0).abs() <= f64::EPSILON, "{time}");
+        }
+        assert_eq!(polished(1.6, 10.0, &at), 1.6);
+        assert_eq!(polished(0.5, 0.1, &at), 0.5);
+    }
 }

@@ -207,4 +207,81 @@ mod tests {
             assert!((2..4).contains(&pressed), "{roles:?}");
         }
     }
+
+    /// Two contacts of one direction: the second rests on the first, or opens above it.
+    #[test]
+    fn only_what_is_closed_is_redundant() {
+        let matrix = |_: usize, _: usize| 1.0;
+        for (second, role) in [
+            (-0.5, Role::Free),
+            (-1.0, Role::Redundant),
+            (-1.0 + 1e-12, Role::Redundant),
+        ] {
+            for warm in [[false; 2], [true, false]] {
+                let roles = pressing(&matrix, &[-1.0, second], &warm);
+                assert_eq!(roles, [Role::Pressed, role], "{second}");
+            }
+        }
+    }
+
+    /// A warm guess from far off, a row that depends on others, forces that vanish on the way:
+    /// the forces are never negative, no rate is, and where one is there is not the other.
+    #[test]
+    fn forces_and_rates_complement_each_other() {
+        let mut seed = 1_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1_u32 << 24) - 0.5
+        };
+        let (mut pressed, mut opened) = (0, 0);
+        for round in 0..500 {
+            let count = 2 + round % 7;
+            // In three dimensions, so that more than three depend on each other.
+            let arms: Vec<[f64; 3]> = (0..count)
+                .map(|_| [random() + 0.5, random(), random()])
+                .collect();
+            let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+            let matrix = |i: usize, j: usize| product(arms[i], arms[j]);
+            let velocity = [random() - 0.3, random(), random()];
+            let rates: Vec<f64> = arms.iter().map(|arm| product(*arm, velocity)).collect();
+            let warm: Vec<bool> = (0..count).map(|_| random() > 0.0).collect();
+            let forces = pushes(&matrix, &rates, &warm);
+            for i in 0..count {
+                let rate = rates[i] + (0..count).map(|j| matrix(i, j) * forces[j]).sum::<f64>();
+                // Pivots down to 1e-11 of a diagonal near 1: the forces lose that many digits.
+                assert!(forces[i] >= 0.0 && rate > -1e-5, "{forces:?} {rate}");
+                assert!(forces[i] * rate < 1e-5, "{} {rate}", forces[i]);
+                pressed += usize::from(forces[i] > 0.0);
+                opened += usize::from(rate > 1e-5);
+            }
+        }
+        assert!(pressed > 500 && opened > 500, "{pressed} {opened}");
+    }
+
+    /// Once nothing closes the search ends, whatever rests, opens or depends on the others: it
+    /// looks at each entry a few times, not in all the rounds that there may be.
+    #[test]
+    fn the_search_ends_when_nothing_closes() {
+        let calls = std::cell::Cell::new(0);
+        let counted = |value: f64| {
+            calls.set(calls.get() + 1);
+            value
+        };
+        // One that presses; one that opens, rests, or depends on it and would still close.
+        let beside = |i: usize, j: usize| counted(if i == j { 1.0 } else { 0.0 });
+        let same = |i: usize, j: usize| counted([1.0, 2.0][i] * [1.0, 2.0][j]);
+        for (matrix, rates, expected) in [
+            (
+                &beside as &dyn Fn(usize, usize) -> f64,
+                [-1.0, 0.5],
+                [1.0, 0.0],
+            ),
+            (&beside, [-1.0, 0.0], [1.0, 0.0]),
+            (&same, [-1.0, -1.9], [0.0, 0.475]),
+        ] {
+            calls.set(0);
+            assert_eq!(pushes(matrix, &rates, &[false; 2]), expected);
+            assert!(calls.get() < 20, "{} for {rates:?}", calls.get());
+        }
+    }
 }

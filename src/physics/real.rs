@@ -206,4 +206,36 @@ mod tests {
         }
         assert!((sum - 1.0 + carry - 1e-14).abs() < 1e-17);
     }
+
+    /// Each function of the scalar is that of the standard library, near 0 with all digits.
+    #[test]
+    fn functions_of_doubles_are_those_of_the_library() {
+        let small = 1e-10_f64;
+        assert_eq!(Real::exp_m1(small), small.exp_m1());
+        assert_eq!(Real::ln_1p(small), small.ln_1p());
+        assert_eq!(Real::exp(2.0), 2.0_f64.exp());
+        assert_eq!(Real::ln(2.0), 2.0_f64.ln());
+        assert_eq!(Real::abs(-2.0), 2.0);
+        assert_eq!(Real::sqrt(2.0), 2.0_f64.sqrt());
+        assert_eq!([Real::half(3.0), Real::twice(3.0)], [1.5, 6.0]);
+        assert_eq!([2.0.larger(3.0), 3.0.larger(2.0)], [3.0, 3.0]);
+        assert!(Real::is_finite(1.0) && !Real::is_finite(f64::INFINITY));
+    }
+
+    /// Products whose difference is below their rounding: (1 + u)² - (1 + 2u) 1 = u².
+    #[test]
+    fn a_difference_of_products_keeps_what_rounding_takes() {
+        let u = 2.0_f64.powi(-30);
+        let left = f64::difference_of_products(1.0 + u, 1.0 + u, 1.0 + 2.0 * u, 1.0);
+        assert_eq!(left, u * u);
+        let left = f64::difference_of_products(1.0 + 2.0 * u, 1.0, 1.0 + u, 1.0 + u);
+        assert_eq!(left, -u * u);
+    }
+
+    #[test]
+    fn a_vector_has_its_components_and_length() {
+        let v: Vector3<f64> = vector([2.0, 3.0, 6.0]);
+        assert_eq!([v.x, v.y, v.z], [2.0, 3.0, 6.0]);
+        assert_eq!(length(&v), 7.0);
+    }
 }

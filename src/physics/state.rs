@@ -26,3 +26,19 @@ impl BodyState {
 pub fn is_finite(vector: &Vector3) -> bool {
     vector.iter().all(|component| component.is_finite())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_component_that_is_no_number_is_enough() {
+        let with = |position: f64, velocity: f64| BodyState {
+            position: Vector3::new(0.0, position, 0.0),
+            velocity: Vector3::new(0.0, 0.0, velocity),
+        };
+        assert!(with(1.0, 1.0).is_finite());
+        assert!(!with(f64::NAN, 1.0).is_finite());
+        assert!(!with(1.0, f64::INFINITY).is_finite());
+    }
+}

@@ -400,6 +400,42 @@ fn all_that_runs_can_be_ended_at_once() {
     }
 }
 
+/// What the keyboard sends to `carom check` ends its solvers too, and their folder goes.
+#[cfg(unix)]
+#[test]
+fn a_check_that_is_interrupted_leaves_neither_solver_nor_folder() {
+    use rustix::process::{Pid, Signal, kill_process};
+
+    let (scratch, word) = (Scratch::new(), marker(5));
+    let solver = scratch.script(
+        &format!(
+            "dirname \"$1\" > \"$D/new\"; mv \"$D/new\" \"$D/0\"; sleep {word} & sleep {word}"
+        ),
+        "{out}",
+    );
+    let mut check = Command::new(env!("CARGO_BIN_EXE_carom"))
+        .args([
+            "check",
+            "headon-equal",
+            "--limit",
+            "60",
+            "--solver",
+            &solver,
+        ])
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !scratch.file("0").exists() {
+        assert!(start.elapsed() < AMPLE, "the solver was not started");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    kill_process(Pid::from_child(&check), Signal::INT).unwrap();
+    assert_eq!(check.wait().unwrap().code(), Some(130));
+    assert_gone(&word);
+    let folder = PathBuf::from(scratch.text("0").trim());
+    assert!(folder.is_absolute() && !folder.exists(), "{folder:?}");
+}
+
 #[test]
 #[ignore = "the other end of all_that_runs_can_be_ended_at_once, which starts it"]
 fn in_a_process_that_is_interrupted() {

@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::float_cmp, clippy::pedantic)]
 
 mod bad_input;
+mod bits;
 mod cases;
 mod check;
 mod closed_forms;
