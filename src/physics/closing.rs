@@ -128,8 +128,8 @@ mod tests {
             rate: -1.0,
             bend: 1e8,
         };
-        // 2/(sqrt(1 + 2e8) - 1), two hundred times.
-        let step = 2.0 / ((1.0 + 2e8_f64).sqrt() - 1.0);
+        // 2/(sqrt(1 + 2e8) + 1), two hundred times.
+        let step = 2.0 / ((1.0 + 2e8_f64).sqrt() + 1.0);
         let Search::OpenUntil(time) = first_closing(1.0, 1e-14, slow) else {
             panic!("not at rest");
         };

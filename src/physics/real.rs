@@ -219,6 +219,8 @@ mod tests {
         assert_eq!(Real::sqrt(2.0), 2.0_f64.sqrt());
         assert_eq!([Real::half(3.0), Real::twice(3.0)], [1.5, 6.0]);
         assert_eq!([2.0.larger(3.0), 3.0.larger(2.0)], [3.0, 3.0]);
+        assert_eq!(1.0 + f64::ROUNDING, 1.0);
+        assert!(1.0 + f64::ROUNDING.next_up() > 1.0);
         assert!(Real::is_finite(1.0) && !Real::is_finite(f64::INFINITY));
     }
 

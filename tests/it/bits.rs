@@ -11,11 +11,19 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom::case::{Case, Library};
+use carom::case::Library;
 use carom::engine::{EngineKind, EngineSpec, engines, prepare};
 use carom::recording::{EventLog, Recording, initial_states};
+use carom::scene::{
+    Attraction, Body, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring,
+};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
+
+use crate::hostile;
+use crate::scenes::{body, scene};
 
 /// One that all engines are at ease with, and one that the hard cases are hard for.
 const STEPS: [f64; 2] = [0.01, 0.1];
@@ -24,13 +32,63 @@ const STEPS: [f64; 2] = [0.01, 0.1];
 const SAMPLES: usize = 24;
 
 /// Cases whose every sample takes long.
-const SLOW: [(&str, usize); 3] = [("cluster-30", 4), ("overlap-1000", 2), ("pi-5", 2)];
+const SLOW: [(&str, usize); 3] = [("cluster-30", 4), ("overlap-1000", 1), ("pi-5", 2)];
+
+/// Lively scenes, and hostile ones, each on `robust` and on one of the others in turn.
+const DRAWN: usize = 200;
 
 /// States, then impacts, books, work and what was given up.
 type Bits = [String; 2];
 
-fn file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bits/bits.csv")
+/// One run: its name in the file, and what is run.
+struct Run {
+    name: String,
+    scene: Scene,
+    spec: EngineSpec,
+    dt: f64,
+}
+
+impl Run {
+    fn new(scene: &Scene, spec: &EngineSpec, dt: f64) -> Self {
+        let slow = SLOW.iter().find(|(name, _)| *name == scene.name);
+        let samples = slow.map_or(SAMPLES, |(_, samples)| *samples);
+        let samples = u32::try_from(samples.min(scene.sample_count())).unwrap();
+        let mut scene = scene.clone();
+        scene.duration = f64::from(samples) * scene.sample_every;
+        Self {
+            name: format!("{},{},{dt}", scene.name, spec.name),
+            scene,
+            spec: spec.clone(),
+            dt,
+        }
+    }
+
+    fn bits(&self) -> Bits {
+        let scene = &self.scene;
+        let mut simulation = prepare(scene, &self.spec, self.dt).unwrap();
+        assert!(simulation.keep_ledger());
+        let mut recording = Recording::at_start(&self.spec.name, scene);
+        let (mut log, mut states) = (EventLog::default(), initial_states(scene));
+        let mut outcome = None;
+        for sample in 1..=scene.sample_count() {
+            outcome = simulation.advance_to(sample, Some(&mut log));
+            simulation.state_into(&mut states);
+            if outcome.is_some() || !states.iter().all(|state| state.is_finite()) {
+                break;
+            }
+            recording.push(&states);
+        }
+        // The debug form of a double is the shortest that reads back as the same bits.
+        let beside = format!(
+            "{outcome:?} {:?} {:?} {:?} {:?} {:?}",
+            log.events(),
+            log.counts(),
+            simulation.ledger(),
+            simulation.work(),
+            simulation.concessions()
+        );
+        [recording.digest()[..16].to_owned(), short_hash(&beside)]
+    }
 }
 
 fn short_hash(text: &str) -> String {
@@ -41,63 +99,118 @@ fn short_hash(text: &str) -> String {
         .collect()
 }
 
-fn bits(case: &Case, spec: &EngineSpec, dt: f64) -> Bits {
-    let mut scene = case.scene.clone();
-    let slow = SLOW.iter().find(|(name, _)| *name == scene.name);
-    let samples = slow.map_or(SAMPLES, |(_, samples)| *samples);
-    let samples = samples.min(scene.sample_count());
-    scene.duration = f64::from(u32::try_from(samples).unwrap()) * scene.sample_every;
-    let mut simulation = prepare(&scene, spec, dt).unwrap();
-    assert!(simulation.keep_ledger());
-    let mut recording = Recording::at_start(&spec.name, &scene);
-    let (mut log, mut states) = (EventLog::default(), initial_states(&scene));
-    let mut outcome = None;
-    for sample in 1..=samples {
-        outcome = simulation.advance_to(sample, Some(&mut log));
-        simulation.state_into(&mut states);
-        if outcome.is_some() || !states.iter().all(|state| state.is_finite()) {
-            break;
-        }
-        recording.push(&states);
-    }
-    // The debug form of a double is the shortest that reads back as the same bits.
-    let beside = format!(
-        "{outcome:?} {:?} {:?} {:?} {:?} {:?}",
-        log.events(),
-        log.counts(),
-        simulation.ledger(),
-        simulation.work(),
-        simulation.concessions()
-    );
-    [recording.digest()[..16].to_owned(), short_hash(&beside)]
+/// Balls of unlike masses and sizes in a small box, with some of the effects, at moderate numbers.
+fn lively(seed: u64) -> Scene {
+    let mut random = Pcg64::seed_from_u64(seed);
+    #[allow(clippy::cast_precision_loss, reason = "53 bits fit")]
+    let mut within = |low: f64, high: f64| {
+        low + (high - low) * ((random.next_u64() >> 11) as f64 * 2f64.powi(-53))
+    };
+    let count = within(2.0, 6.0);
+    let bodies: Vec<Body> = ["a", "b", "c", "d", "e", "f"]
+        .into_iter()
+        .zip(0..)
+        .take_while(|(_, place)| f64::from(*place) < count)
+        .map(|(name, _)| {
+            let (mass, radius) = (within(0.3, 4.0), within(0.2, 0.5));
+            let position = [(); 3].map(|()| within(-1.2, 1.2));
+            body(
+                name,
+                mass,
+                radius,
+                position,
+                [(); 3].map(|()| within(-2.0, 2.0)),
+            )
+        })
+        .collect();
+    // Some restitutions, softenings, dampings and stiffnesses are none.
+    let mut some = |share: f64| within(0.0, 1.0) < share;
+    let [contact, cushions, tall, drag, rest, attraction, gravity] =
+        [0.85, 0.7, 0.5, 0.4, 0.4, 0.4, 0.4].map(&mut some);
+    let [soft, bouncy, stiff, damped] = [0.5, 0.5, 0.8, 0.6].map(&mut some);
+    let between: &[[&str; 2]] = match (some(0.4), some(0.4)) {
+        (true, true) if bodies.len() > 2 => &[["a", "b"], ["c", "b"]],
+        (true, _) => &[["b", "a"]],
+        _ => &[],
+    };
+    let restitution = if bouncy { within(0.2, 1.0) } else { 0.0 };
+    let effects = Effects {
+        contact: contact.then_some(Contact { restitution }),
+        cushions: cushions.then(|| Cushions {
+            half_width: within(1.8, 2.5),
+            half_length: within(1.8, 2.5),
+            half_height: tall.then(|| within(1.8, 2.5)),
+            restitution: within(0.3, 1.0),
+        }),
+        drag: drag.then(|| Drag {
+            coefficient: within(0.05, 0.8),
+        }),
+        rest: rest.then(|| Rest {
+            speed: within(0.05, 0.4),
+        }),
+        attraction: attraction.then(|| Attraction {
+            constant: within(0.2, 3.0),
+            softening: if soft { within(0.05, 0.3) } else { 0.0 },
+        }),
+        gravity: gravity.then(|| Gravity {
+            acceleration: [within(-0.5, 0.5), within(-6.0, 0.0), within(-0.5, 0.5)],
+        }),
+        springs: between
+            .iter()
+            .map(|ends| Spring {
+                between: ends.map(Into::into),
+                stiffness: if stiff { within(1.0, 60.0) } else { 0.0 },
+                rest_length: within(0.0, 1.5),
+                damping: if damped { within(0.05, 2.0) } else { 0.0 },
+            })
+            .collect(),
+    };
+    let mut scene = scene(2.0, 0.25, bodies, effects);
+    scene.name = format!("lively-{seed}");
+    scene
 }
 
-fn computed() -> BTreeMap<String, Bits> {
-    let cases: Vec<Case> = [Library::Embedded, Library::EmbeddedHard]
-        .iter()
+/// Every run that is stored.
+fn runs() -> Vec<Run> {
+    let engines: Vec<EngineSpec> = engines()
+        .into_iter()
+        .filter(|spec| matches!(spec.kind, EngineKind::Impulse(_)))
+        .collect();
+    let (robust, others) = engines.split_last().unwrap();
+    assert_eq!(robust.name, "robust");
+    let cases = [Library::Embedded, Library::EmbeddedHard]
+        .into_iter()
         .flat_map(|library| {
             library
                 .names()
                 .unwrap()
                 .into_iter()
-                .map(|name| library.case(&name))
+                .map(move |name| library.case(&name))
         })
-        .map(Result::unwrap)
-        .collect();
-    let engines: Vec<EngineSpec> = engines()
+        .map(|case| case.unwrap().scene);
+    let mut runs = Vec::new();
+    for scene in cases {
+        for spec in &engines {
+            runs.extend(STEPS.map(|dt| Run::new(&scene, spec, dt)));
+        }
+    }
+    let lively = (0..).map(lively).zip(STEPS.into_iter().cycle());
+    let hostile = hostile::drawn(DRAWN)
         .into_iter()
-        .filter(|spec| matches!(spec.kind, EngineKind::Impulse(_)))
-        .collect();
-    let one = |(case, spec, dt): (&Case, &EngineSpec, f64)| {
-        let name = format!("{},{},{dt}", case.scene.name, spec.name);
-        (name, bits(case, spec, dt))
-    };
-    let jobs: Vec<_> = cases
-        .iter()
-        .flat_map(|case| engines.iter().map(move |spec| (case, spec)))
-        .flat_map(|(case, spec)| STEPS.map(|dt| (case, spec, dt)))
-        .collect();
-    jobs.into_par_iter().map(one).collect()
+        .zip(0..)
+        .map(|((mut scene, dt), number)| {
+            scene.name = format!("hostile-{number}");
+            (scene, dt)
+        });
+    let drawn = lively.take(DRAWN).chain(hostile);
+    for ((scene, dt), other) in drawn.zip(others.iter().cycle()) {
+        runs.extend([robust, other].map(|spec| Run::new(&scene, spec, dt)));
+    }
+    runs
+}
+
+fn file() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bits/bits.csv")
 }
 
 /// Functions such as the exponential are those of the system: elsewhere their last digit may be
@@ -106,19 +219,22 @@ fn computed() -> BTreeMap<String, Bits> {
 #[test]
 fn every_number_is_the_stored_one() {
     let text = fs::read_to_string(file()).unwrap();
-    let stored: BTreeMap<String, Bits> = text
+    let stored: BTreeMap<&str, [&str; 2]> = text
         .lines()
         .skip(1)
         .map(|line| {
             let (rest, beside) = line.rsplit_once(',').unwrap();
             let (name, states) = rest.rsplit_once(',').unwrap();
-            (name.to_owned(), [states.to_owned(), beside.to_owned()])
+            (name, [states, beside])
         })
         .collect();
-    let computed = computed();
-    assert!(stored.keys().eq(computed.keys()), "cases, engines or steps");
-    let differ = |name: &&String| stored[*name] != computed[*name];
-    let changed: Vec<&String> = computed.keys().filter(differ).collect();
+    let runs = runs();
+    assert_eq!(runs.len(), stored.len(), "cases, engines or steps");
+    let changed: Vec<&str> = runs
+        .par_iter()
+        .filter(|run| stored[&run.name[..]] != run.bits())
+        .map(|run| &run.name[..])
+        .collect();
     let some = &changed[..changed.len().min(8)];
     assert!(
         changed.is_empty(),
@@ -132,10 +248,14 @@ fn every_number_is_the_stored_one() {
 #[test]
 #[ignore = "stores the numbers of this build, to be looked at before they are committed"]
 fn bits_are_stored_anew() {
-    let mut text = String::from("case,engine,dt,states,beside\n");
-    for (name, [states, beside]) in computed() {
-        text += &format!("{name},{states},{beside}\n");
-    }
+    let lines: Vec<String> = runs()
+        .par_iter()
+        .map(|run| {
+            let [states, beside] = run.bits();
+            format!("{},{states},{beside}\n", run.name)
+        })
+        .collect();
     fs::create_dir_all(file().parent().unwrap()).unwrap();
+    let text = format!("case,engine,dt,states,beside\n{}", lines.concat());
     fs::write(file(), text).unwrap();
 }

@@ -215,6 +215,17 @@ fn no_engine_panics_or_records_a_nan() {
     }
 }
 
+/// So many hostile scenes with their steps, the same in every run.
+pub fn drawn(count: usize) -> Vec<(Scene, f64)> {
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
+    let scenes = prop_oneof![hostile(Reach::Wild), hostile(Reach::Tame)];
+    let input = (scenes, prop_oneof![Just(0.01), Just(1.0)]);
+    (0..count)
+        .map(|_| input.new_tree(&mut runner).unwrap().current())
+        .collect()
+}
+
 /// So many scenes from one seed, spread over the engines in turn.
 const MANY: usize = 20_000;
 
@@ -225,14 +236,7 @@ const MANY: usize = 20_000;
 fn twenty_thousand_hostile_scenes_leave_no_engine_without_an_answer() {
     let built = engines().into_iter().filter(EngineSpec::is_built);
     let specs: Vec<_> = built.map(in_short).collect();
-    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
-    let scenes = prop_oneof![hostile(Reach::Wild), hostile(Reach::Tame)];
-    let input = (scenes, prop_oneof![Just(0.01), Just(1.0)]);
-    let drawn: Vec<(Scene, f64)> = (0..MANY)
-        .map(|_| input.new_tree(&mut runner).unwrap().current())
-        .collect();
-    let kept: Vec<(usize, Kept)> = drawn
+    let kept: Vec<(usize, Kept)> = drawn(MANY)
         .par_iter()
         .enumerate()
         .map(|(place, (scene, dt))| {

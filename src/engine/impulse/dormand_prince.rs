@@ -8,8 +8,8 @@ use crate::physics::Vector3;
 /// The pair of Dormand and Prince, orders 5 and 4, in places and velocities together.
 ///
 /// The step asked for is the longest; shorter ones are taken so that the difference of the two
-/// orders stays below `(dt/duration)^5` of the scene's size, but for its rounding. So the error falls with the fifth
-/// power of the step asked for, wherever the short steps fall.
+/// orders stays below `(dt/duration)^5` of the scene's size, but for its rounding. So the error
+/// falls with the fifth power of the step asked for, wherever the short steps fall.
 /// Source: Dormand and Prince 1980; Hairer, Nørsett, Wanner, "Solving Ordinary Differential
 /// Equations I", table 5.2 and section II.4 for the choice of steps.
 #[derive(Debug, Clone, Default)]
@@ -139,4 +139,93 @@ fn combined(slopes: &[[Vector3; 2]], weights: &[f64]) -> [Vector3; 2] {
         sum[1] += slope[1] * *weight;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Conditions of order: the weights of a stage add up to its instant c, the step integrates
+    /// powers of the time up to the fourth exactly, and the two orders differ by none of them up
+    /// to the third. Source: Hairer, Nørsett, Wanner, section II.1.
+    #[test]
+    fn the_tableau_has_the_order_that_it_says() {
+        let instants = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
+        for (row, instant) in ROWS.iter().zip(&instants[1..]) {
+            let sum: f64 = row.iter().sum();
+            // A dozen terms of up to 12.
+            assert!((sum - instant).abs() < 1e-14, "{sum} for {instant}");
+        }
+        let moment = |weights: &[f64], power: i32| -> f64 {
+            let terms = weights.iter().zip(&instants);
+            terms.map(|(weight, c)| weight * c.powi(power)).sum()
+        };
+        for power in 0..5 {
+            let exact = 1.0 / f64::from(power + 1);
+            assert!((moment(&ROWS[5], power) - exact).abs() < 1e-15, "{power}");
+        }
+        for power in 0..4 {
+            assert!(moment(&DIFFERENCE, power).abs() < 1e-16, "{power}");
+        }
+        assert!(moment(&DIFFERENCE, 4).abs() > 1e-4);
+    }
+
+    /// A step of this length whose two orders differ by so much in place, and in velocity times
+    /// the step.
+    fn after(dt: f64, [place, velocity]: [f64; 2], duration: f64) -> DormandPrince {
+        let mut method = DormandPrince::default();
+        method.prepare(2.0, duration, 1.0);
+        let mut slopes = [[Vector3::zeros(); 2]; STAGES];
+        slopes[6] = [place / dt, velocity / (dt * dt)].map(|slope| Vector3::y() * (-40.0 * slope));
+        method.slopes = vec![slopes];
+        method.choose(dt);
+        method
+    }
+
+    /// Errors of 1/32, 1 and 32 of what is allowed ask for steps of 2, 1 and 1/2, and a tenth less.
+    #[test]
+    fn the_next_step_follows_the_fifth_root_of_the_error() {
+        let allowed = 2.0 * 0.1_f64.powi(5);
+        for (times, rejected, factor) in [(1.0 / 32.0, false, 1.8), (32.0, true, 0.45)] {
+            let error = times * allowed;
+            for errors in [[error, 0.0], [0.0, error], [error, 0.5 * error]] {
+                let method = after(0.25, errors, 10.0);
+                assert_eq!(method.is_rejected(), rejected, "{errors:?}");
+                let next = method.length(1.0);
+                assert!((next / (0.25 * factor) - 1.0).abs() < 1e-12, "{next}");
+                assert_eq!(method.length(0.01), 0.01);
+            }
+        }
+        // Just above and just below what is allowed.
+        assert!(after(0.25, [1.001 * allowed, 0.0], 10.0).is_rejected());
+        assert!(!after(0.25, [0.999 * allowed, 0.0], 10.0).is_rejected());
+    }
+
+    /// Steps grow and shrink by a factor of five at most, between the longest and a thousandth of
+    /// it, which is taken whatever its error.
+    #[test]
+    fn steps_stay_within_their_bounds() {
+        for (dt, error, rejected, next) in [
+            (0.1, 1e-30, false, 0.5),
+            (0.1, 0.0, false, 0.5),
+            (0.5, 1e-30, false, 1.0),
+            (0.1, 1e30, true, 0.02),
+            (0.002, 1e30, true, 0.001),
+            (0.001, 1e30, false, 0.001),
+            (0.1, f64::INFINITY, false, 0.02),
+        ] {
+            let method = after(dt, [error, 0.0], 10.0);
+            assert_eq!(method.is_rejected(), rejected, "{dt} {error}");
+            assert!((method.length(1.0) - next).abs() < 1e-15, "{dt} {error}");
+        }
+    }
+
+    /// Where the step asked for is so short that rounding is more than it allows, rounding is
+    /// allowed.
+    #[test]
+    fn no_step_is_asked_to_be_better_than_rounding() {
+        let allowed = 2.0 * f64::EPSILON;
+        assert!(!after(0.25, [0.9 * allowed, 0.0], 1e5).is_rejected());
+        assert!(after(0.25, [1.1 * allowed, 0.0], 1e5).is_rejected());
+    }
 }

@@ -5,8 +5,8 @@
 //! call for is not there.
 //!
 //! The other rungs of the ladder change one numerical choice at a time: `motion`,
-//! `runge_kutta` and `dormand_prince` move the bodies, `handling` and `sweep` deal with what they meet, `ladder` says
-//! which of them a name means.
+//! `runge_kutta` and `dormand_prince` move the bodies, `handling` and `sweep` deal with what they
+//! meet, `ladder` says which of them a name means.
 
 mod books;
 mod contacts;
