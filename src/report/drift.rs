@@ -43,6 +43,9 @@ struct CsvRow<'a> {
     /// Effective restitutions; of a case its worst deviation, twice.
     least: Option<f64>,
     most: Option<f64>,
+    /// Phases of the impact at which the bound holds, and how many there are.
+    held: Option<usize>,
+    phases: Option<usize>,
     /// Of the deviation.
     bound: Option<f64>,
     unit: &'a str,
@@ -60,14 +63,17 @@ fn write_rows(study: &DriftStudy, out: &mut dyn Write) -> io::Result<()> {
                 expected: measured.expected.word(),
                 least: None,
                 most: None,
+                held: None,
+                phases: None,
                 bound: None,
                 unit: "",
                 digest: None,
             };
             match &measured.found {
                 Found::Restitution(found) => {
-                    row.least = Some(found.least);
-                    row.most = Some(found.most);
+                    let [least, most] = found.range();
+                    (row.least, row.most) = (Some(least), Some(most));
+                    (row.held, row.phases) = (Some(found.held()), Some(found.effective.len()));
                     row.bound = Some(found.bound);
                 }
                 Found::Case(check) => {
@@ -102,20 +108,23 @@ fn telling(check: &CaseCheck) -> Option<(Against, &Row)> {
     Some((of.against, row?))
 }
 
-/// A number of the sweep: six decimals say what single precision can.
+/// A restitution as people read it: three decimals, and a power of ten where they would hide it.
 fn shown(restitution: f64) -> String {
     if restitution == 0.0 || restitution.abs() >= 5e-4 {
-        format!("{restitution:.4}")
+        format!("{restitution:.3}")
     } else {
         engineering(restitution)
     }
 }
 
+/// One number where the phases agree, else from where to where, and at how many the bound holds.
 fn of_sweep(found: &Restitution) -> String {
-    if found.most - found.least <= found.bound {
-        return shown(found.worst());
+    let [least, most] = found.range();
+    if most - least <= found.bound {
+        return shown(most);
     }
-    format!("{} to {}", shown(found.least), shown(found.most))
+    let (held, all) = (found.held(), found.effective.len());
+    format!("{} to {}, {held} of {all}", shown(least), shown(most))
 }
 
 fn of_case(check: &CaseCheck) -> String {

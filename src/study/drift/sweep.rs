@@ -37,44 +37,48 @@ pub const ROUNDINGS: f64 = 64.0;
 pub struct Restitution {
     /// The restitution of the scene, e.
     pub restitution: f64,
-    /// Smallest of the effective ones.
-    pub least: f64,
-    /// Largest of them.
-    pub most: f64,
+    /// The effective ones. Shape: `[phase]`.
+    pub effective: Vec<f64>,
     /// How far each may be from the scene's.
     pub bound: f64,
 }
 
 impl Restitution {
-    /// From the effective restitution at each phase; at least one, or nothing holds.
+    /// From the effective restitution at each phase, at least one.
     #[must_use]
-    pub fn of(restitution: f64, effective: &[f64]) -> Self {
-        // `min` and `max` drop what is no number; a sum keeps it.
-        let sum: f64 = effective.iter().sum();
-        let or_nan = |value: f64| if sum.is_finite() { value } else { f64::NAN };
+    pub fn of(restitution: f64, effective: Vec<f64>) -> Self {
         Self {
             restitution,
-            least: or_nan(effective.iter().copied().fold(f64::INFINITY, f64::min)),
-            most: or_nan(effective.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+            effective,
             bound: ROUNDINGS * f64::from(f32::EPSILON),
         }
     }
 
-    /// The one that is farther from the scene's.
+    /// The smallest and the largest; not a number where any is none.
     #[must_use]
-    pub fn worst(&self) -> f64 {
-        if (self.least - self.restitution).abs() > (self.most - self.restitution).abs() {
-            self.least
-        } else {
-            self.most
+    pub fn range(&self) -> [f64; 2] {
+        // `f64::min` and `f64::max` drop what is no number.
+        if self.effective.iter().any(|value| value.is_nan()) {
+            return [f64::NAN; 2];
         }
+        let values = || self.effective.iter().copied();
+        [
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        ]
     }
 
-    /// Whether all are within the bound.
+    /// At how many phases the bound holds.
+    #[must_use]
+    pub fn held(&self) -> usize {
+        let is_near = |value: &&f64| (*value - self.restitution).abs() <= self.bound;
+        self.effective.iter().filter(is_near).count()
+    }
+
+    /// Whether it holds at all of them.
     #[must_use]
     pub fn holds(&self) -> bool {
-        let is_near = |value: f64| (value - self.restitution).abs() <= self.bound;
-        is_near(self.least) && is_near(self.most)
+        self.held() == self.effective.len()
     }
 }
 
@@ -157,7 +161,7 @@ pub fn restitution(subject: &dyn Subject, restitution: f64, speed: f64) -> Resul
             Ok(effective_restitution(&run))
         })
         .collect::<Result<Vec<_>>>()?;
-    Ok(Restitution::of(restitution, &effective))
+    Ok(Restitution::of(restitution, effective))
 }
 
 /// The same, where a worker that fails is a result.
