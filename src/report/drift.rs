@@ -34,60 +34,71 @@ pub fn write_drift(folder: &Folder, study: &DriftStudy) -> Result<()> {
 }
 
 /// A row of `drift.csv`; the names of the fields are the header.
-#[derive(Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct CsvRow<'a> {
     rapier3d: &'a str,
     measure: &'a str,
     verdict: &'a str,
     expected: &'a str,
-    /// Effective restitutions; of a case its worst deviation, twice.
-    least: Option<f64>,
-    most: Option<f64>,
-    /// Phases of the impact at which the bound holds, and how many there are.
-    held: Option<usize>,
-    phases: Option<usize>,
-    /// Of the deviation.
+    /// What was off most, and by how much.
+    metric: &'a str,
+    deviation: Option<f64>,
     bound: Option<f64>,
     unit: &'a str,
+    /// Effective restitutions over the phases of the impact.
+    restitution_min: Option<f64>,
+    restitution_max: Option<f64>,
+    phases: Option<usize>,
+    phases_held: Option<usize>,
+    /// Of the recording of a case.
     digest: Option<&'a str>,
+}
+
+fn csv_row<'a>(version: &'a str, measured: &'a Measured) -> CsvRow<'a> {
+    let row = CsvRow {
+        rapier3d: version,
+        measure: &measured.measure,
+        verdict: measured.verdict.word(),
+        expected: measured.expected.word(),
+        ..CsvRow::default()
+    };
+    match &measured.found {
+        Found::Restitution(found) => {
+            let [least, most] = found.range();
+            CsvRow {
+                metric: "restitution",
+                deviation: Some((found.restitution - least).max(most - found.restitution)),
+                bound: Some(found.bound),
+                restitution_min: Some(least),
+                restitution_max: Some(most),
+                phases: Some(found.effective.len()),
+                phases_held: Some(found.held()),
+                ..row
+            }
+        }
+        Found::Case(check) => {
+            let digest = check.digest.as_deref();
+            match telling(check) {
+                Some((_, worst)) => CsvRow {
+                    metric: worst.metric.key(),
+                    deviation: Some(worst.value),
+                    bound: Some(worst.tolerance),
+                    unit: &worst.unit,
+                    digest,
+                    ..row
+                },
+                None => CsvRow { digest, ..row },
+            }
+        }
+        Found::Nothing(_) => row,
+    }
 }
 
 fn write_rows(study: &DriftStudy, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     for of in &study.versions {
         for measured in &of.measures {
-            let mut row = CsvRow {
-                rapier3d: &of.version,
-                measure: &measured.measure,
-                verdict: measured.verdict.word(),
-                expected: measured.expected.word(),
-                least: None,
-                most: None,
-                held: None,
-                phases: None,
-                bound: None,
-                unit: "",
-                digest: None,
-            };
-            match &measured.found {
-                Found::Restitution(found) => {
-                    let [least, most] = found.range();
-                    (row.least, row.most) = (Some(least), Some(most));
-                    (row.held, row.phases) = (Some(found.held()), Some(found.effective.len()));
-                    row.bound = Some(found.bound);
-                }
-                Found::Case(check) => {
-                    row.digest = check.digest.as_deref();
-                    if let Some((_, worst)) = telling(check) {
-                        row.least = Some(worst.value);
-                        row.most = Some(worst.value);
-                        row.bound = Some(worst.tolerance);
-                        row.unit = &worst.unit;
-                    }
-                }
-                Found::Nothing(_) => {}
-            }
-            table.serialize(row)?;
+            table.serialize(csv_row(&of.version, measured))?;
         }
     }
     table.flush()
