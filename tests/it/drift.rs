@@ -311,6 +311,10 @@ fn a_worker_that_fails_is_red() {
         "{text}"
     );
     assert!(
+        text.contains("shot-2-61          RED no recording (!)\n"),
+        "{text}"
+    );
+    assert!(
         text.contains("failed with exit code 2; standard error ends: no such effect"),
         "{text}"
     );
