@@ -135,6 +135,14 @@ pub enum Error {
         /// What it did.
         message: String,
     },
+    /// A worker of the drift sentinel that cannot be built: carom could not run.
+    #[error("worker of {worker}: {message}")]
+    DriftWorker {
+        /// The crate and its version.
+        worker: String,
+        /// What was wrong, and what would be right.
+        message: String,
+    },
     /// The same engine twice.
     #[error("engine `{name}` is asked for twice; name each engine once")]
     EngineTwice {

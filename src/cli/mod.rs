@@ -4,6 +4,8 @@ mod args;
 mod bodies;
 mod check;
 mod cost;
+#[cfg(feature = "drift")]
+mod drift;
 mod effects;
 mod output;
 mod plan;
@@ -40,6 +42,10 @@ enum Command {
     /// Hold solvers against truth, their own stored recordings and Rapier's: exit code 1 if one no
     /// longer agrees
     Check(check::Args),
+    /// Measure published versions of Rapier side by side: exit code 1 if one gives other results
+    /// than are known of it
+    #[cfg(feature = "drift")]
+    Drift(drift::Args),
     /// Print what each engine does in a step of a scene, and nothing else does it
     Plan(plan::Args),
     /// Switch each effect of a scene, one at a time: what it costs, and what it changes
@@ -74,6 +80,8 @@ fn dispatch(command: Command) -> Result<bool> {
         Command::Cost(args) => cost::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Check(args) => return check::run(&args),
+        #[cfg(feature = "drift")]
+        Command::Drift(args) => return drift::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Scenes(args) => scenes::run(&args),

@@ -6,6 +6,8 @@ mod case_page;
 pub mod chart;
 mod check;
 mod cost;
+#[cfg(feature = "drift")]
+mod drift;
 mod effects_page;
 mod files;
 mod format;
@@ -24,6 +26,8 @@ pub use bodies::{bodies_findings, bodies_table, write_bodies};
 pub use case_page::findings;
 pub use check::{blessing_text, check_junit, check_text, replay_text, write_blessing};
 pub use cost::CostReport;
+#[cfg(feature = "drift")]
+pub use drift::{drift_findings, drift_table, write_drift};
 pub use effects_page::{effects_findings, effects_table, write_effects};
 pub use files::{Folder, remove_unfinished};
 pub use format::{engineering, percent};

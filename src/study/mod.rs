@@ -4,6 +4,8 @@ pub mod bodies;
 mod breaches;
 pub mod check;
 pub mod cost;
+#[cfg(feature = "drift")]
+pub mod drift;
 mod effects;
 mod machine;
 mod made;

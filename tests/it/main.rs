@@ -10,6 +10,8 @@ mod command;
 mod command_line;
 mod controls;
 mod departures;
+#[cfg(feature = "drift")]
+mod drift;
 mod effects;
 mod exact_flight;
 mod exact_forces;

@@ -2,7 +2,7 @@
 
 mod blessing;
 mod junit;
-mod text;
+pub(super) mod text;
 
 pub use blessing::{blessing_text, write_blessing};
 pub use junit::check_junit;

@@ -54,7 +54,7 @@ fn heading(check: &CaseCheck) -> String {
 }
 
 /// The most telling of a check, in a line.
-pub(super) fn in_a_line(check: &CaseCheck) -> String {
+pub(in crate::report) fn in_a_line(check: &CaseCheck) -> String {
     if let Some(fault) = &check.fault {
         return fault.clone();
     }

@@ -1,0 +1,66 @@
+//! `carom drift`: do published versions of Rapier still give what is known of them?
+
+use std::path::{Path, PathBuf};
+
+use super::args::LibraryArgs;
+use super::output::{progress, say};
+use crate::error::Result;
+use crate::report::{Folder, drift_findings, drift_table, write_drift};
+use crate::study::drift::{Workers, drift};
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Versions of Rapier, separated by commas [default: all that have a worker]
+    #[arg(long, value_name = "VERSIONS", value_delimiter = ',')]
+    versions: Vec<String>,
+    /// Folder of workers [default: drift/ in the sources that carom was built from]
+    #[arg(long, value_name = "DIR")]
+    workers: Option<PathBuf>,
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// Folder for the files
+    #[arg(long, value_name = "DIR", default_value = "runs/drift")]
+    out: PathBuf,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// Print the study as JSON instead of the table
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Whether every measure came to what is known.
+pub(super) fn run(args: &Args) -> Result<bool> {
+    let folder = match &args.workers {
+        Some(folder) => folder.clone(),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("drift"),
+    };
+    let workers = Workers::read(&folder)?;
+    let versions = workers.chosen(&args.versions)?;
+    let out = Folder::open(&args.out)?;
+    let bar = progress(2 * versions.len(), args.quiet);
+    let study = drift(
+        &folder,
+        &versions,
+        &args.library.library(),
+        &|what, done| {
+            bar.set_position(done as u64);
+            bar.set_message(what.to_owned());
+        },
+    )?;
+    bar.finish_and_clear();
+    write_drift(&out, &study)?;
+    if args.json {
+        say(serde_json::to_string_pretty(&study)?)?;
+    } else if !args.quiet {
+        say(drift_table(&study))?;
+        for finding in drift_findings(&study) {
+            say(finding)?;
+        }
+        say(format_args!(
+            "Written to {}",
+            out.path().join("README.md").display()
+        ))?;
+    }
+    Ok(study.holds())
+}
