@@ -103,3 +103,50 @@ pub(super) fn slowed(path: &impl Way, speed: f64, until: f64) -> Option<f64> {
     }
     Some(slow)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bound on the bend so large that the search makes no way worth speaking of.
+    fn standing(width: f64, rate: f64) -> Option<f64> {
+        closing(1.0, 1e-14, |_| Opening {
+            width,
+            rate,
+            bend: 1e40,
+        })
+    }
+
+    /// Where a search stands still, what is left of the gap decides: less than the bodies go in a
+    /// time too short to matter is none, unless they part or rest.
+    #[test]
+    fn a_search_that_stands_still_ends_at_gaps_of_no_size() {
+        assert!(standing(1e-17, -1.0).is_some_and(|time| time < 1e-20));
+        assert_eq!(standing(1e-3, -1.0), None);
+        assert_eq!(standing(1e-17, 1.0), None);
+        let at_rest = |_: f64| Opening {
+            width: 0.0,
+            rate: 0.0,
+            bend: 1.0,
+        };
+        assert_eq!(closing(1.0, 1e-14, at_rest), None);
+    }
+
+    /// A second search goes on where the first rested: its time counts from there.
+    #[test]
+    fn a_search_that_rests_is_taken_up_once() {
+        // Steps of (2 gap/bend)^(1/2): sqrt(2 bend), or 283, from 1 to 0.
+        let at = |t: f64| Opening {
+            width: 1.0 - t,
+            rate: -1.0,
+            bend: 4e4,
+        };
+        assert!(matches!(
+            first_closing(2.0, 1e-14, at),
+            Search::OpenUntil(_)
+        ));
+        let time = closing(2.0, 1e-14, at).unwrap();
+        assert!((time - 1.0).abs() < 1e-15, "{time}");
+        assert_eq!(closing(0.9, 1e-14, at), None);
+    }
+}

@@ -221,3 +221,23 @@ pub(super) fn stop(particle: &mut Particle, body: usize, left: f64, observer: &m
     );
     particle.velocity = Vector3::zeros();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten impacts a body, fewer where their pairs are too many to look at.
+    #[test]
+    fn impacts_are_followed_as_far_as_pairs_can_be_looked_at() {
+        for (bodies, most) in [
+            (1, 10),
+            (2, 20),
+            (90, 900),
+            (200, 201),
+            (1000, 8),
+            (10_000, 1),
+        ] {
+            assert_eq!(most_impacts(bodies), most, "{bodies}");
+        }
+    }
+}

@@ -83,7 +83,7 @@ fn part(particles: &[Particle], overlaps: &[Overlap], moves: &mut [Vector3]) {
 }
 
 /// A direction for two of several coincident spheres, so that a heap of them does not stay on one
-/// line: turned about z by the golden angle for each body.
+/// line: turned about y by the golden angle for each body.
 fn fanned_out(normal: Vector3, a: usize, b: usize) -> Vector3 {
     if b == a + 1 && a == 0 {
         return normal;
@@ -204,5 +204,25 @@ mod tests {
             sphere.0 = 100.0_f64.powi(place % 3);
         }
         assert!(separated(&uneven, None).1);
+    }
+
+    /// Directions of coincident centres: of length 1, turned about y by the golden angle a body,
+    /// and risen by less than half.
+    #[test]
+    fn coincident_centres_are_fanned_out_about_y() {
+        let normal = Vector3::new(0.6, 0.0, 0.8);
+        assert_eq!(fanned_out(normal, 0, 1), normal);
+        for (a, b) in [(0, 2), (1, 2), (3, 8)] {
+            let fanned = fanned_out(normal, a, b);
+            assert!((fanned.norm() - 1.0).abs() < 1e-15);
+            let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+            let angle = 0.8_f64.atan2(0.6) + golden * f64::from(u8::try_from(a + b).unwrap());
+            let flat = fanned.x.hypot(fanned.z);
+            assert!((fanned.x / flat - angle.cos()).abs() < 1e-14, "{a} {b}");
+            assert!((fanned.z / flat - angle.sin()).abs() < 1e-14, "{a} {b}");
+            let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+            let rise = (share * f64::from(u8::try_from(b - a).unwrap())).fract() - 0.5;
+            assert!((fanned.y / flat - rise).abs() < 1e-14, "{a} {b}");
+        }
     }
 }

@@ -81,3 +81,32 @@ pub(in crate::engine::impulse) fn plan(phases: &Phases) -> Vec<Phase> {
     );
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::impulse::robust::touch::tests::start;
+
+    /// Springs and dampers are counted each on their own.
+    #[test]
+    fn the_plan_counts_springs_and_dampers() {
+        let spring = |damping: u8| {
+            format!(
+                "[[effects.springs]]\nbetween=['b0','b1']\nstiffness=1\nrest_length=1\n\
+                 damping={damping}\n"
+            )
+        };
+        let spheres = [(1.0, [0.0; 3], [0.0; 3]), (1.0, [9.0, 0.0, 0.0], [0.0; 3])];
+        for (dampings, text, dampers) in [
+            (&[0, 0][..], "2 springs", None),
+            (&[0, 1, 0], "3 springs", Some("1 dampers")),
+        ] {
+            let effects: String = dampings.iter().map(|damping| spring(*damping)).collect();
+            let (phases, ..) = start(&spheres, &effects);
+            let said = format!("{:?}", plan(&phases));
+            assert!(said.contains(text), "{said}");
+            assert_eq!(said.contains("dampers"), dampers.is_some(), "{said}");
+            assert!(dampers.is_none_or(|count| said.contains(count)), "{said}");
+        }
+    }
+}

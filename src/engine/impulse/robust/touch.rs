@@ -244,4 +244,20 @@ pub(super) mod tests {
         );
         (phases, particles, touches)
     }
+
+    /// Far from the origin the rounding of places is more than what counts as near otherwise.
+    #[test]
+    fn far_spheres_touch_within_the_rounding_of_their_places() {
+        for far in [1e9, 1e11] {
+            let near = ROUNDINGS * f64::EPSILON * far;
+            for (gap, count) in [(0.9 * near, 1), (1.2 * near, 0)] {
+                let spheres = [
+                    (1.0, [far, 0.0, 0.0], [0.0; 3]),
+                    (1.0, [far + 2.0 + gap, 0.0, 0.0], [0.0; 3]),
+                ];
+                let (_, _, touches) = start(&spheres, "[effects.contact]\nrestitution=1\n");
+                assert_eq!(touches.len(), count, "{far} {gap}");
+            }
+        }
+    }
 }

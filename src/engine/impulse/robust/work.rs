@@ -207,4 +207,74 @@ mod tests {
         assert_eq!(stood.count(), 1);
         assert!(!work.stands_still());
     }
+
+    /// A thousand events that take 2e-8 s leave 1 s to 5e10 more: endless. Ten times as long is
+    /// slow, but ends.
+    #[test]
+    fn a_pace_that_never_arrives_ends_all_bounces() {
+        for (went, endless) in [(2e-11, true), (2e-10, false)] {
+            let mut work = Work::of(2, 1.0, false);
+            for _ in 1..PACED {
+                work.charge_event(went, 1.0);
+            }
+            assert!(!work.bounces_no_more());
+            work.charge_event(went, 1.0);
+            assert_eq!(work.bounces_no_more(), endless, "{went}");
+        }
+        // The pace is that of the last thousand, not of all.
+        let mut work = Work::of(2, 1.0, false);
+        for _ in 0..PACED {
+            work.charge_event(1e-3, 1.0);
+        }
+        for _ in 0..PACED {
+            work.charge_event(2e-11, 1.0);
+        }
+        assert!(work.bounces_no_more());
+    }
+
+    /// More pairs, and forces on the way, leave fewer impacts; few steps may try more motions.
+    #[test]
+    fn allowances_follow_pairs_forces_and_steps() {
+        let most = |bodies, forced| Work::of(bodies, 1.0, forced).most;
+        assert_eq!(most(2, false), 402_000);
+        assert_eq!(most(4, false), 2_000 + 11_111);
+        assert_eq!(most(4, true), 2_000 + 222);
+        let motions = |steps| Work::of(2, steps, false).motions_a_step;
+        assert_eq!([1.0, 10.0, 1e6].map(motions), [1_000_000, 100_000, 10_000]);
+    }
+
+    /// Two of 1e6/12 motions too many cannot be paid, and motions add up to a doubling.
+    #[test]
+    fn substeps_are_paid_in_motions() {
+        let work = Work::of(2, 1.0, false);
+        assert!(!work.cannot_pay(1.0, 83_333.0));
+        assert!(work.cannot_pay(1.0, 83_334.0));
+        let mut work = Work::of(2, 1e9, false);
+        for _ in 0..MOTIONS_A_STEP / 2 {
+            work.charge_motion();
+        }
+        assert_eq!(work.shortest(1.0), 1e-9);
+        for _ in 0..5 {
+            work.charge_long_step();
+        }
+        assert_eq!(work.shortest(1.0), 2e-9);
+    }
+
+    /// Each round counts, one without any too; as many again end all meetings.
+    #[test]
+    fn rounds_of_impacts_count() {
+        let mut work = Work::of(4, 1.0, true);
+        work.charge_rounds(0);
+        work.charge_rounds(work.most - 1);
+        assert!(!work.bounces_no_more());
+        work.charge_rounds(1);
+        assert!(work.bounces_no_more() && !work.meets_no_more());
+        work.charge_rounds(work.most);
+        assert!(work.meets_no_more());
+        for _ in 0..2 * work.most {
+            work.begin_step();
+        }
+        assert!(!work.bounces_no_more());
+        assert_eq!(work.impacts, 0);
+    }
 }
