@@ -1,6 +1,7 @@
 //! What must hold whatever the numbers: conservation, symmetry, scaling, absent = neutral.
 
-use carom::engine::{engine, record};
+use carom::engine::{engine, prepare, record};
+use carom::physics::BodyState;
 use carom::recording::Recording;
 use carom::scene::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring};
 use proptest::prelude::*;
@@ -32,6 +33,51 @@ fn momentum_holds_without_walls() {
         );
         let drift = momentum_drift(&scene, &recording);
         assert!(drift < 1e-12, "seed {seed}: {drift:e}");
+    }
+}
+
+/// What a step keeps for the next, such as its last forces, is not used for other states.
+#[test]
+fn states_set_from_outside_go_on_as_a_start_does() {
+    let at = |x: f64, speed: f64| BodyState {
+        position: [x, 0.0, 0.0].into(),
+        velocity: [0.0, 0.0, speed].into(),
+    };
+    let bodies = |states: &[BodyState; 2]| {
+        let [a, b] = states.map(|state| (state.position.into(), state.velocity.into()));
+        vec![body("a", 1.0, 0.1, a.0, a.1), body("b", 2.0, 0.1, b.0, b.1)]
+    };
+    let effects = Effects {
+        attraction: Some(Attraction {
+            constant: 3.0,
+            softening: 0.0,
+        }),
+        drag: Some(Drag { coefficient: 0.1 }),
+        ..Effects::default()
+    };
+    let (first, then) = (
+        [at(-1.0, 0.5), at(1.0, -0.5)],
+        [at(2.0, -1.0), at(-0.5, 0.3)],
+    );
+    for name in [
+        "lecture",
+        "lecture-in-place",
+        "exact-drag",
+        "verlet",
+        "swept",
+        "swept-4",
+    ] {
+        let spec = engine(name).unwrap();
+        let run = scene(1.0, 0.25, bodies(&first), effects.clone());
+        let mut simulation = prepare(&run, &spec, 0.01).unwrap();
+        simulation.advance_to(1, None);
+        simulation.set_state(1, &then);
+        simulation.advance_to(2, None);
+        let mut states = then;
+        simulation.state_into(&mut states);
+        let fresh = scene(0.25, 0.25, bodies(&then), effects.clone());
+        let fresh = record(&fresh, &spec, 0.01).unwrap();
+        assert_eq!(states[..], *fresh.sample(1), "{name}");
     }
 }
 
