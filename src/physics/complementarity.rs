@@ -216,12 +216,18 @@ mod tests {
             (-0.5, Role::Free),
             (-1.0, Role::Redundant),
             (-1.0 + 1e-12, Role::Redundant),
+            (-1.0 + 1e-10, Role::Redundant),
+            (-1.0 + 1e-8, Role::Free),
         ] {
-            for warm in [[false; 2], [true, false]] {
-                let roles = pressing(&matrix, &[-1.0, second], &warm);
-                assert_eq!(roles, [Role::Pressed, role], "{second}");
+            for (warm, scale) in [([false; 2], 1.0), ([true, false], 1.0), ([false; 2], 1e3)] {
+                let roles = pressing(&matrix, &[-scale, second * scale], &warm);
+                assert_eq!(roles, [Role::Pressed, role], "{second} {scale}");
             }
         }
+        // One of its own rests on nothing, however slow.
+        let beside = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let roles = pressing(&beside, &[-1.0, 0.0], &[false; 2]);
+        assert_eq!(roles, [Role::Pressed, Role::Free]);
     }
 
     /// A warm guess from far off, a row that depends on others, forces that vanish on the way:

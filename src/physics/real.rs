@@ -89,15 +89,11 @@ pub trait Real:
 
     /// `exp(x)`. Valid for: any x, with relative accuracy.
     #[must_use]
-    fn exp(self) -> Self {
-        self.exp_m1() + Self::one()
-    }
+    fn exp(self) -> Self;
 
     /// `ln(x)`. Valid for: x above 0.
     #[must_use]
-    fn ln(self) -> Self {
-        (self - Self::one()).ln_1p()
-    }
+    fn ln(self) -> Self;
 
     /// Half of it.
     #[must_use]

@@ -182,10 +182,11 @@ pub(super) fn touching(
         let room = particles.iter().map(room).fold(0.0_f64, f64::max);
         for [a, b] in neighbours.within(particles, 2.0 * room) {
             let (one, other) = (&particles[*a], &particles[*b]);
-            let reach = one.radius + other.radius;
+            let rounding = 2.0 * ROUNDINGS * f64::EPSILON * one.position.amax();
+            let reach = one.radius + other.radius + rounding;
             let squared = (one.position - other.position).norm_squared();
             // A hair more, for what counts as near; squares beyond doubles touch nothing.
-            if squared <= reach * reach * 1.000_001 + far_squared(one) {
+            if squared <= reach * reach * 1.000_001 {
                 offer(EventKind::Contact { a: *a, b: *b });
             }
         }
@@ -202,12 +203,6 @@ pub(super) fn touching(
             }
         }
     }
-}
-
-/// Room for the rounding of coordinates in a test of squares.
-fn far_squared(particle: &Particle) -> f64 {
-    let rounding = 2.0 * ROUNDINGS * f64::EPSILON * particle.position.amax();
-    rounding * (rounding + 4.0 * particle.radius)
 }
 
 #[cfg(test)]
