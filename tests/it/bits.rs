@@ -213,11 +213,14 @@ fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bits/bits.csv")
 }
 
-/// Functions such as the exponential are those of the system: elsewhere their last digit may be
-/// another one.
+/// Functions such as the exponential are those of the system: elsewhere, and on a processor that
+/// does not multiply and add in one, their last digit may be another one.
 #[cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
 #[test]
 fn every_number_is_the_stored_one() {
+    if !std::arch::is_x86_feature_detected!("fma") {
+        return;
+    }
     let text = fs::read_to_string(file()).unwrap();
     let stored: BTreeMap<&str, [&str; 2]> = text
         .lines()
