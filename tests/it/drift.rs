@@ -279,6 +279,11 @@ fn a_worker_that_is_not_as_known_is_told() {
     );
     let page = fs::read_to_string(scratch_known.path().join("runs/drift/README.md")).unwrap();
     assert!(page.contains("| e 0.5 at 4 m/s | RED -1.000 |"), "{page}");
+    // A blank line would end the table: heading, rule and fourteen rows stand together.
+    let lines: Vec<&str> = page.lines().collect();
+    let table = lines.split(|line| !line.starts_with('|'));
+    let heights: Vec<usize> = table.map(<[_]>::len).filter(|rows| *rows > 0).collect();
+    assert_eq!(heights, [16], "{page}");
     let table = fs::read_to_string(scratch_known.path().join("runs/drift/drift.csv")).unwrap();
     let row = "0.0.1,e 0.5 at 4 m/s,red,red,restitution,1.5,";
     assert!(table.contains(row), "{table}");
