@@ -7,7 +7,6 @@
 //! bits_are_stored_anew` stores the new numbers in `tests/bits/bits.csv`, and `carom check
 //! --bless` those of the reference cases.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -20,6 +19,7 @@ use carom::scene::{
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::hostile;
@@ -37,12 +37,20 @@ const SLOW: [(&str, usize); 3] = [("cluster-30", 4), ("overlap-1000", 1), ("pi-5
 /// Lively scenes, and hostile ones, each on `robust` and on one of the others in turn.
 const DRAWN: usize = 200;
 
-/// States, then impacts, books, work and what was given up.
-type Bits = [String; 2];
+/// A line of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Line {
+    case: String,
+    engine: String,
+    dt: f64,
+    /// States.
+    states: String,
+    /// Impacts, books, work and what was given up.
+    beside: String,
+}
 
-/// One run: its name in the file, and what is run.
+/// What is run.
 struct Run {
-    name: String,
     scene: Scene,
     spec: EngineSpec,
     dt: f64,
@@ -56,14 +64,13 @@ impl Run {
         let mut scene = scene.clone();
         scene.duration = f64::from(samples) * scene.sample_every;
         Self {
-            name: format!("{},{},{dt}", scene.name, spec.name),
             scene,
             spec: spec.clone(),
             dt,
         }
     }
 
-    fn bits(&self) -> Bits {
+    fn line(&self) -> Line {
         let scene = &self.scene;
         let mut simulation = prepare(scene, &self.spec, self.dt).unwrap();
         assert!(simulation.keep_ledger());
@@ -87,7 +94,13 @@ impl Run {
             simulation.work(),
             simulation.concessions()
         );
-        [recording.digest()[..16].to_owned(), short_hash(&beside)]
+        Line {
+            case: scene.name.clone(),
+            engine: self.spec.name.clone(),
+            dt: self.dt,
+            states: recording.digest()[..16].to_owned(),
+            beside: short_hash(&beside),
+        }
     }
 }
 
@@ -209,6 +222,11 @@ fn runs() -> Vec<Run> {
     runs
 }
 
+/// Every run in its order.
+fn computed() -> Vec<Line> {
+    runs().par_iter().map(Run::line).collect()
+}
+
 fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bits/bits.csv")
 }
@@ -221,22 +239,15 @@ fn every_number_is_the_stored_one() {
     if !std::arch::is_x86_feature_detected!("fma") {
         return;
     }
-    let text = fs::read_to_string(file()).unwrap();
-    let stored: BTreeMap<&str, [&str; 2]> = text
-        .lines()
-        .skip(1)
-        .map(|line| {
-            let (rest, beside) = line.rsplit_once(',').unwrap();
-            let (name, states) = rest.rsplit_once(',').unwrap();
-            (name, [states, beside])
-        })
-        .collect();
-    let runs = runs();
-    assert_eq!(runs.len(), stored.len(), "cases, engines or steps");
-    let changed: Vec<&str> = runs
-        .par_iter()
-        .filter(|run| stored[&run.name[..]] != run.bits())
-        .map(|run| &run.name[..])
+    let mut stored = csv::Reader::from_path(file()).unwrap();
+    let stored: Vec<Line> = stored.deserialize().map(Result::unwrap).collect();
+    let computed = computed();
+    assert_eq!(computed.len(), stored.len(), "cases, engines or steps");
+    let changed: Vec<&Line> = computed
+        .iter()
+        .zip(&stored)
+        .filter(|(computed, stored)| computed != stored)
+        .map(|(computed, _)| computed)
         .collect();
     let some = &changed[..changed.len().min(8)];
     assert!(
@@ -251,14 +262,10 @@ fn every_number_is_the_stored_one() {
 #[test]
 #[ignore = "stores the numbers of this build, to be looked at before they are committed"]
 fn bits_are_stored_anew() {
-    let lines: Vec<String> = runs()
-        .par_iter()
-        .map(|run| {
-            let [states, beside] = run.bits();
-            format!("{},{states},{beside}\n", run.name)
-        })
-        .collect();
     fs::create_dir_all(file().parent().unwrap()).unwrap();
-    let text = format!("case,engine,dt,states,beside\n{}", lines.concat());
-    fs::write(file(), text).unwrap();
+    let mut table = csv::Writer::from_path(file()).unwrap();
+    for line in computed() {
+        table.serialize(line).unwrap();
+    }
+    table.flush().unwrap();
 }

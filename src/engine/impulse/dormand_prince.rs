@@ -160,6 +160,7 @@ mod tests {
             let terms = weights.iter().zip(&instants);
             terms.map(|(weight, c)| weight * c.powi(power)).sum()
         };
+        // Terms below 1 and, of the difference, below 1/16: some roundings of each.
         for power in 0..5 {
             let exact = 1.0 / f64::from(power + 1);
             assert!((moment(&ROWS[5], power) - exact).abs() < 1e-15, "{power}");

@@ -25,8 +25,7 @@ const MOMENTUM: f64 = 0.9;
 /// In rounds: every overlap asks its two spheres to part, in the inverse ratio of the masses and
 /// by a share that both can follow, so that the centre of mass stays; all move at once, so that
 /// no order of bodies decides. Moves go on with momentum, also where overlaps grow for a while: a
-/// light ball between heavy ones that is stopped whenever it swings back is not out in a thousand
-/// rounds.
+/// light ball between heavy ones that is stopped whenever it swings back takes far more rounds.
 /// Source: the projection of position-based dynamics, Jacobi form: Macklin et al. 2014, "Unified
 /// particle physics for real-time applications", section 4; momentum: Polyak 1964, "Some methods
 /// of speeding up the convergence of iteration methods".
@@ -195,8 +194,8 @@ mod tests {
         assert!(!separated(&row(10), Some([9.9, 1.0, 1.0])).1);
     }
 
-    /// A light ball between heavy ones swings; were the momentum of its swing taken from it, three
-    /// times as many rounds as there are would not do.
+    /// A light ball between heavy ones swings; were the momentum of its swing taken from it, the
+    /// rounds that there are would not do.
     #[test]
     fn rows_of_unequal_masses_are_pulled_apart() {
         let mut uneven = row(11);
@@ -212,6 +211,7 @@ mod tests {
     fn coincident_centres_are_fanned_out_about_y() {
         let normal = Vector3::new(0.6, 0.0, 0.8);
         assert_eq!(fanned_out(normal, 0, 1), normal);
+        // Angles up to 30, each rounded by half an ulp of 2^-48.
         for (a, b) in [(0, 2), (1, 2), (3, 8)] {
             let fanned = fanned_out(normal, a, b);
             assert!((fanned.norm() - 1.0).abs() < 1e-15);

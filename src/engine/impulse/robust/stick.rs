@@ -138,7 +138,7 @@ mod tests {
 
     /// A row between two walls: one touch more than there are directions, so A is singular. Once
     /// no more than rounding is left, further rounds find curvature in rounding alone and throw
-    /// the rates back, at equal masses to 0.02 of what they were. With masses of 1 to 1e6 the
+    /// the rates back by many powers of ten, also at equal masses. With masses of 1 to 1e6 the
     /// residual does not get that small in time, and rounds beyond twice the touches do the same.
     #[test]
     fn rows_between_walls_end_before_rounding_is_enlarged() {

@@ -243,7 +243,8 @@ mod tests {
         assert_eq!([1.0, 10.0, 1e6].map(motions), [1_000_000, 100_000, 10_000]);
     }
 
-    /// Two of 1e6/12 motions too many cannot be paid, and motions add up to a doubling.
+    /// A million motions pay 83,333 substeps at 12 motions each; motions add up to a doubling of
+    /// the shortest.
     #[test]
     fn substeps_are_paid_in_motions() {
         let work = Work::of(2, 1.0, false);
