@@ -252,6 +252,15 @@ impl Error {
         }
     }
 
+    /// A file whose bytes are no text.
+    #[must_use]
+    pub fn not_utf8(file: &str, wrong: &std::string::FromUtf8Error) -> Self {
+        Self::NotUtf8 {
+            file: file.to_owned(),
+            byte: wrong.utf8_error().valid_up_to(),
+        }
+    }
+
     /// An unwritable file or folder.
     #[must_use]
     pub fn write(path: &Path, source: std::io::Error) -> Self {

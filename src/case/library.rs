@@ -255,9 +255,7 @@ struct CaseFile {
 
 impl CaseFile {
     fn text(&self) -> Result<String> {
-        String::from_utf8(self.bytes.clone()).map_err(|wrong| Error::NotUtf8 {
-            file: self.path.clone(),
-            byte: wrong.utf8_error().valid_up_to(),
-        })
+        let text = String::from_utf8(self.bytes.clone());
+        text.map_err(|wrong| Error::not_utf8(&self.path, &wrong))
     }
 }

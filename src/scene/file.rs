@@ -17,10 +17,7 @@ use crate::error::{Error, Result};
 pub fn read(path: &Path) -> Result<Scene> {
     let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
     let file = path.display().to_string();
-    let text = String::from_utf8(bytes).map_err(|wrong| Error::NotUtf8 {
-        file: file.clone(),
-        byte: wrong.utf8_error().valid_up_to(),
-    })?;
+    let text = String::from_utf8(bytes).map_err(|wrong| Error::not_utf8(&file, &wrong))?;
     parse(&text, &file)
 }
 

@@ -86,13 +86,8 @@ impl Workers {
         }
         let bytes = fs::read(&path).map_err(|source| Error::read(&path, source))?;
         let file = path.display().to_string();
-        match String::from_utf8(bytes) {
-            Ok(text) => Self::parse(&text, &file, folder),
-            Err(wrong) => Err(Error::NotUtf8 {
-                file,
-                byte: wrong.utf8_error().valid_up_to(),
-            }),
-        }
+        let text = String::from_utf8(bytes).map_err(|wrong| Error::not_utf8(&file, &wrong))?;
+        Self::parse(&text, &file, folder)
     }
 
     /// Parses the text of `workers.toml`; `file` is its name in messages, `folder` holds the
