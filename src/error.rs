@@ -60,7 +60,7 @@ pub enum Error {
     },
     /// A file or folder could not be written.
     #[error(
-        "{path}: cannot be written: {source}; nothing was left half-written, choose another place with --out or make room"
+        "{path}: cannot be written: {source}; what stood there before is unchanged, choose another place with --out or make room"
     )]
     Write {
         /// The file or folder.
@@ -216,6 +216,36 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// A file that carom must not replace.
+    #[error("{path}: {reason}; nothing was written, {remedy}")]
+    Foreign {
+        /// The file or folder.
+        path: PathBuf,
+        /// What it is.
+        reason: &'static str,
+        /// What would be right.
+        remedy: &'static str,
+    },
+    /// Another run writes into the folder.
+    #[error(
+        "{path}: another carom is writing there; wait until it has ended, or choose another folder with --out"
+    )]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The system refused to put a complete result in place.
+    #[error(
+        "{path}: cannot be put in place: {source}; the complete result is in {stage}, and the next run into the same folder puts it in place first"
+    )]
+    Commit {
+        /// The file that could not be renamed or removed.
+        path: PathBuf,
+        /// Where the result is.
+        stage: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A number that an argument does not allow.
     #[error("--{argument} {found}: {remedy}")]
     Argument {
@@ -258,6 +288,16 @@ impl Error {
         Self::NotUtf8 {
             file: file.to_owned(),
             byte: wrong.utf8_error().valid_up_to(),
+        }
+    }
+
+    /// Something that stands in the way of a result, whatever options are given.
+    #[must_use]
+    pub fn foreign(path: &Path, reason: &'static str) -> Self {
+        Self::Foreign {
+            path: path.to_owned(),
+            reason,
+            remedy: "choose another folder with --out, or move it away",
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::output::{progress, say, warn};
 use crate::engine::{DEFAULT_DT, EngineSpec};
 use crate::error::{Error, Result};
-use crate::report::{Folder, bodies_findings, bodies_table, write_bodies};
+use crate::report::{BODIES_FILES, Output, Replace, bodies_findings, bodies_table, write_bodies};
 use crate::study::Timing;
 use crate::study::bodies::{BodiesOptions, BodiesStudy, Walls, bodies_cost, joined};
 
@@ -49,7 +49,7 @@ impl BodiesArgs {
         specs: &[EngineSpec],
         timing: Timing,
         budget: Option<u64>,
-        out: &Path,
+        (out, replace): (&Path, Replace),
         quiet: bool,
     ) -> Result<()> {
         if !(self.dt.is_finite() && self.dt > 0.0) {
@@ -72,7 +72,10 @@ impl BodiesArgs {
         };
         // Before the long run, so that a wrong file is told at once.
         let others = joined(&self.joined, &options)?;
-        let folder = Folder::open(out)?;
+        let output = Output::open(out, replace)?;
+        let folder = output.folder();
+        folder.claim(BODIES_FILES)?;
+        folder.unfinished().claim(BODIES_FILES)?;
         let bar = progress(1, quiet);
         let watch = |bodies: usize, done: usize, all: usize| {
             bar.set_length(all as u64);
@@ -80,11 +83,16 @@ impl BodiesArgs {
             bar.set_message(format!("{bodies} bodies"));
         };
         // After each size, so that an interrupted study leaves what it has found.
-        let keep = |study: &BodiesStudy| write_bodies(&folder, study);
+        let keep = |study: &BodiesStudy| {
+            let mut so_far = study.clone();
+            so_far.points.extend_from_slice(&others);
+            folder.keep_unfinished(|folder| write_bodies(folder, &so_far))
+        };
         let mut study = bodies_cost(specs, &options, &watch, &keep)?;
         bar.finish_and_clear();
-        study.points.extend(others);
+        study.points.extend_from_slice(&others);
         write_bodies(&folder, &study)?;
+        output.commit()?;
         if study.machine.is_busy() {
             warn(
                 "something else ran when the study began, or had just ended; ratios hold better \
@@ -103,7 +111,7 @@ impl BodiesArgs {
         }
         say(format_args!(
             "Written to {}",
-            folder.path().join("README.md").display()
+            out.join("README.md").display()
         ))
     }
 

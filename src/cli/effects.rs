@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::args::{EngineArgs, LibraryArgs};
+use super::args::{EngineArgs, LibraryArgs, ReplaceArgs};
 use super::output::{say, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
-use crate::report::{Folder, effects_findings, effects_table, write_effects};
+use crate::report::{EFFECTS_FILES, Output, effects_findings, effects_table, write_effects};
 use crate::study::{Change, Timing, effects};
 
 /// Repetitions beyond this are a slip of the pen.
@@ -32,6 +32,8 @@ pub(super) struct Args {
     /// Folder for the files [default: runs/effects-<scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -59,7 +61,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(scene, &specs)?;
-    let folder = Folder::open(&out)?;
+    let output = Output::open(&out, args.replace.replace())?;
+    let folder = output.folder();
+    folder.claim(EFFECTS_FILES)?;
     let bar = spinner(&scene.name, args.quiet);
     let timing = Timing {
         seed: args.seed,
@@ -67,6 +71,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let study = effects(scene, &specs, args.engines.dt, timing)?;
     write_effects(&folder, &study)?;
+    output.commit()?;
     bar.finish_and_clear();
     let unchanged = study
         .rows
@@ -87,6 +92,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        out.join("README.md").display()
     ))
 }

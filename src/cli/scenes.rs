@@ -8,7 +8,7 @@ use super::args::LibraryArgs;
 use super::output::say;
 use crate::case::{Evidence, Library, scene_text};
 use crate::error::{Error, Result};
-use crate::report::Folder;
+use crate::report::write_file;
 use crate::scene::generate::{Cluster, Gas, Rack};
 use crate::scene::{Scene, parse, to_toml};
 
@@ -244,21 +244,12 @@ fn generate(recipe: &Recipe) -> Result<()> {
 /// Writes a scene file, but never over another one without being told to.
 fn write(file: &Path, force: bool, text: &str) -> Result<()> {
     let name = file.file_name().filter(|_| !file.is_dir());
-    let Some(name) = name.and_then(|name| name.to_str()) else {
+    if name.is_none() {
         return Err(Error::Argument {
             argument: "out",
             found: file.display().to_string(),
             remedy: "that is a folder; name a file in it".into(),
         });
-    };
-    if file.exists() && !force {
-        return Err(Error::Exists {
-            path: file.to_owned(),
-        });
     }
-    let folder = file
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    Folder::open(folder.unwrap_or(Path::new(".")))?
-        .write(name, |out| out.write_all(text.as_bytes()))
+    write_file(file, force, text.as_bytes())
 }

@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 
-use super::args::chosen;
+use super::args::{ReplaceArgs, chosen};
 use super::output::{progress, say};
 use super::studies::Order;
 use crate::case::Library;
 use crate::engine::{EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::report::{Folder, stability_findings, stability_table, write_stability};
+use crate::report::{
+    Folder, Output, STABILITY_FILES, stability_findings, stability_table, write_stability,
+};
 use crate::study::stability::{
     Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
 };
@@ -38,6 +40,8 @@ pub(super) struct Args {
     /// Folder for the files
     #[arg(long, value_name = "DIR", default_value = "runs/stability")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -124,7 +128,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         None => Library::hard(),
     };
     let cases = cases(&args.cases, &library)?;
-    let folder = Folder::open(&args.out)?;
+    let output = Output::open(&args.out, args.replace.replace())?;
+    let folder = output.folder();
+    folder.claim(STABILITY_FILES)?;
     // Whoever asks for some cases asks for those.
     let maps = if args.cases.is_empty() {
         &MAPS[..]
@@ -132,6 +138,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         &[]
     };
     let (study, summary) = make(&cases, &specs, args.budget, &folder, maps, args.quiet)?;
+    output.commit()?;
     if args.quiet {
         return Ok(());
     }
@@ -144,7 +151,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        args.out.join("README.md").display()
     ))
 }
 

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
-use super::output::write_json;
 use super::studies::StudyNote;
 use super::template::fill;
 use super::{Folder, Studies, engineering, percent};
@@ -84,6 +83,9 @@ struct Everything<'a> {
     cases: &'a [Summary],
 }
 
+/// The files of the index.
+pub const INDEX_FILES: [&str; 2] = ["README.md", "summary.json"];
+
 /// Writes `README.md` and `summary.json` of a report.
 ///
 /// # Errors
@@ -103,7 +105,7 @@ pub fn write_index(
         engines,
         cases: summaries,
     };
-    folder.write("summary.json", |out| write_json(out, &everything))
+    folder.write_summary(&everything)
 }
 
 /// The index as Markdown. The first two engines are the ones that its table compares.

@@ -30,6 +30,7 @@ mod ledger;
 mod limits;
 mod oracle;
 mod orders;
+mod outputs;
 mod own_truth;
 mod plain_loop;
 mod plan;

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::case::{baseline_file, thinning, with_profile};
 use crate::error::{Error, Result};
 use crate::recording::write_trajectory;
-use crate::report::Folder;
+use crate::report::{Output, Replace};
 use crate::scene::Scene;
 use crate::study::check::Blessing;
 
@@ -39,7 +39,8 @@ pub fn write_blessing(
     text: Option<&str>,
     blessing: &Blessing,
 ) -> Result<String> {
-    let folder = Folder::open(&library.join(&scene.name))?;
+    let output = Output::open(&library.join(&scene.name), Replace::Named)?;
+    let folder = output.folder();
     let (like, derived) = (&blessing.like, &blessing.derived);
     let text = with_profile(text, like, &derived.profile).map_err(|wrong| Error::Profile {
         case: scene.name.clone(),
@@ -50,5 +51,6 @@ pub fn write_blessing(
         Ok(write_trajectory(&derived.baseline, &thinned, out)?)
     })?;
     folder.write("expected.toml", |out| out.write_all(text.as_bytes()))?;
+    output.commit()?;
     Ok(text)
 }
