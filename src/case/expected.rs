@@ -53,7 +53,9 @@ pub struct EnergyBound {
     pub gain_max: f64,
     /// How far it may fall below it; without, as far as it likes.
     pub loss_max: Option<f64>,
-    /// The scale, kg length²/s²; without, |kinetic| + |potential| of the start.
+    /// The scale, kg length²/s²; without, the kinetic energy of the start and the
+    /// sizes of the energies of attraction and springs there. A scene that starts with none of
+    /// these, as bodies that fall in uniform gravity do, must state it.
     pub scale: Option<f64>,
     /// Why it must hold.
     pub why: String,

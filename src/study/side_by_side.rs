@@ -208,9 +208,5 @@ fn common_scale(voices: &[Voice]) -> Sizes {
             .reduce(Sizes::smaller)
     };
     let scale = finished.map(|voice| voice.scale).reduce(Sizes::smaller);
-    scale.or_else(of_all).unwrap_or(Sizes {
-        length: 0.0,
-        energy: 0.0,
-        momentum: 0.0,
-    })
+    scale.or_else(of_all).unwrap_or_default()
 }
