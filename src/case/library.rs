@@ -1,15 +1,18 @@
 //! Where cases come from, and how one is read.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
 use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH, baseline_file, thinning};
 use crate::error::{Error, Result};
+use crate::input;
 use crate::recording::{
-    Recording, Undetermined, check_start, read_events, read_trajectory, read_trajectory_start,
+    EVENTS_BYTES_MAX, Recording, Undetermined, check_start, read_events, read_trajectory,
+    read_trajectory_start, trajectory_bytes_max,
 };
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, TEXT_BYTES_MAX};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
 static EMBEDDED_HARD: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/hard");
@@ -118,15 +121,13 @@ impl Library {
         let Some(table) = self.file(name, "truth.csv")? else {
             return Ok(None);
         };
-        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
+        let (rows, path) = (table.table(trajectory_bytes_max(scene))?, &*table.path);
         let mut recording = match evidence {
-            Evidence::Independent => read_trajectory(TRUTH, scene, bytes, path)?,
-            Evidence::Own => {
-                up_to_its_end(read_trajectory_start(TRUTH, scene, bytes, path)?, scene)
-            }
+            Evidence::Independent => read_trajectory(TRUTH, scene, rows, path)?,
+            Evidence::Own => up_to_its_end(read_trajectory_start(TRUTH, scene, rows, path)?, scene),
         };
         if let Some(events) = self.file(name, "events.csv")? {
-            recording.events = read_events(scene, events.bytes.as_slice(), &events.path)?;
+            recording.events = read_events(scene, events.table(EVENTS_BYTES_MAX)?, &events.path)?;
         }
         check_start(scene, &recording, path)?;
         Ok(Some(recording))
@@ -148,8 +149,8 @@ impl Library {
             return Ok(None);
         };
         let thinned = scene.every(thinning(scene));
-        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
-        read_trajectory_start(engine, &thinned, bytes, path).map(Some)
+        let rows = table.table(trajectory_bytes_max(&thinned))?;
+        read_trajectory_start(engine, &thinned, rows, &table.path).map(Some)
     }
 
     /// The text of a case's `expected.toml`, as it stands.
@@ -180,14 +181,12 @@ impl Library {
         match self {
             Self::Folder(folder) => {
                 let path = folder.join(case).join(file);
-                match std::fs::read(&path) {
-                    Ok(bytes) => Ok(Some(CaseFile {
-                        path: path.display().to_string(),
-                        bytes,
-                    })),
-                    Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => Ok(None),
-                    Err(wrong) => Err(Error::read(&path, wrong)),
-                }
+                let is_there = path.try_exists();
+                let is_there = is_there.map_err(|wrong| Error::read(&path, wrong))?;
+                Ok(is_there.then(|| CaseFile {
+                    path: path.display().to_string(),
+                    place: Place::OnDisk(path),
+                }))
             }
             Self::Embedded => Ok(file_in(&EMBEDDED, case, file)),
             Self::EmbeddedHard => Ok(file_in(&EMBEDDED_HARD, case, file)),
@@ -221,11 +220,11 @@ fn names_in(embedded: &Dir<'_>) -> Vec<String> {
 }
 
 /// A file of a case compiled in.
-fn file_in(embedded: &Dir<'_>, case: &str, file: &str) -> Option<CaseFile> {
+fn file_in(embedded: &'static Dir<'static>, case: &str, file: &str) -> Option<CaseFile> {
     let found = embedded.get_file(format!("{case}/{file}"))?;
     Some(CaseFile {
         path: format!("{case}/{file} (compiled in)"),
-        bytes: found.contents().to_vec(),
+        place: Place::CompiledIn(found.contents()),
     })
 }
 
@@ -250,12 +249,28 @@ fn without_heading(text: &str) -> &str {
 
 struct CaseFile {
     path: String,
-    bytes: Vec<u8>,
+    place: Place,
+}
+
+enum Place {
+    OnDisk(PathBuf),
+    CompiledIn(&'static [u8]),
 }
 
 impl CaseFile {
     fn text(&self) -> Result<String> {
-        let text = String::from_utf8(self.bytes.clone());
-        text.map_err(|wrong| Error::not_utf8(&self.path, &wrong))
+        match &self.place {
+            Place::OnDisk(path) => input::text(path, TEXT_BYTES_MAX),
+            Place::CompiledIn(bytes) => String::from_utf8(bytes.to_vec())
+                .map_err(|wrong| Error::not_utf8(&self.path, &wrong)),
+        }
+    }
+
+    /// The rows of a table of at most so many bytes.
+    fn table(&self, bytes_max: u64) -> Result<Box<dyn Read>> {
+        match &self.place {
+            Place::OnDisk(path) => Ok(Box::new(input::open(path, bytes_max)?)),
+            Place::CompiledIn(bytes) => Ok(Box::new(*bytes)),
+        }
     }
 }

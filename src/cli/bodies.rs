@@ -6,11 +6,9 @@ use super::output::{progress, say, warn};
 use crate::engine::{DEFAULT_DT, EngineSpec};
 use crate::error::{Error, Result};
 use crate::report::{Folder, bodies_findings, bodies_table, write_bodies};
+use crate::scene::BODIES_MAX;
 use crate::study::Timing;
 use crate::study::bodies::{BodiesOptions, BodiesStudy, Walls, bodies_cost, joined};
-
-/// Fewer bodies hit nothing, more take hours.
-const BODIES: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// What the study of numbers of bodies is asked beyond what every study of cost is.
 #[derive(Debug, clap::Args)]
@@ -112,11 +110,11 @@ impl BodiesArgs {
         let mut sizes = self.sizes.clone();
         sizes.sort_unstable();
         sizes.dedup();
-        match sizes.iter().find(|size| !BODIES.contains(size)) {
+        match sizes.iter().find(|size| !(1..=BODIES_MAX).contains(*size)) {
             Some(size) => Err(Error::Argument {
                 argument: "bodies",
                 found: size.to_string(),
-                remedy: format!("give {} to {}", BODIES.start(), BODIES.end()),
+                remedy: format!("give 1 to {BODIES_MAX}"),
             }),
             None => Ok(sizes),
         }

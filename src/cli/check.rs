@@ -1,7 +1,6 @@
 //! `carom check`: does a solver still agree with truth, with itself and with Rapier?
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -14,7 +13,8 @@ use crate::case::{Case, Library, REFERENCE};
 use crate::engine::external::Limits;
 use crate::engine::{DEFAULT_DT, EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::recording::read_trajectory_start;
+use crate::input;
+use crate::recording::{read_trajectory_start, trajectory_bytes_max};
 use crate::report::{blessing_text, check_junit, check_text, replay_text, write_blessing};
 use crate::study::check::{
     Blessing, Candidate, Program, Replay, Subject, TrajectoryFile, bless, check, digests, profile,
@@ -204,7 +204,7 @@ fn run_again(file: &Path, cases: &[Case], specs: &[EngineSpec], args: &Args) -> 
         (_, false) => return Err(one("name the one engine that made it")),
     };
     let scene = &case.scene;
-    let table = File::open(file).map_err(|wrong| Error::read(file, wrong))?;
+    let table = input::open(file, trajectory_bytes_max(scene))?;
     let name = file.display().to_string();
     let recorded = read_trajectory_start(&spec.name, scene, table, &name)?;
     let replayed = spec.record(scene, DEFAULT_DT)?;

@@ -7,10 +7,7 @@ use super::output::{say, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
 use crate::report::{Folder, effects_findings, effects_table, write_effects};
-use crate::study::{Change, Timing, effects};
-
-/// Repetitions beyond this are a slip of the pen.
-const REPETITIONS_MAX: usize = 10_000;
+use crate::study::{Change, REPETITIONS_MAX, Timing, effects};
 
 /// The engines unless others are asked for; the exact ones may take long, once for each effect.
 const DEFAULT: [&str; 4] = ["lecture", "rapier", "rapier-f64", "rapier-matched"];

@@ -9,6 +9,7 @@ use crate::case::Library;
 use crate::engine::{EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{Folder, stability_findings, stability_table, write_stability};
+use crate::study::BUDGET_MAX;
 use crate::study::stability::{
     Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
 };
@@ -111,11 +112,11 @@ fn make(
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    if args.budget == 0 {
+    if !(1..=BUDGET_MAX).contains(&args.budget) {
         return Err(Error::Argument {
             argument: "budget",
-            found: "0".into(),
-            remedy: "give a number above 0".into(),
+            found: args.budget.to_string(),
+            remedy: format!("give 1 to {BUDGET_MAX}"),
         });
     }
     let specs = specs(&args.names)?;

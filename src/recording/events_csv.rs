@@ -1,5 +1,6 @@
 //! `time,kind,a,b,impulse`: a row an event, read and written as a stream.
 
+use std::collections::HashMap;
 use std::io::{Read, Write};
 
 use super::table::Table;
@@ -39,11 +40,13 @@ pub fn write_events(
 /// [`Error::Table`](crate::error::Error::Table) with the line, for a wrong header, number, kind or name.
 pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventLog> {
     let mut table = Table::open(input, &HEADER, file)?;
+    let names = scene.bodies.iter().map(|body| body.name.as_str());
+    let indices: HashMap<&str, usize> = names.zip(0..).collect();
     let mut events = Vec::new();
     while table.advance()? {
         let body = |column: usize| {
             let name = table.text(column);
-            let index = scene.body_index(name);
+            let index = indices.get(name).copied();
             index.ok_or_else(|| table.wrong(format!("`{name}` is no body of the scene")))
         };
         let kind = match table.text(1) {

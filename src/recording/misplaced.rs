@@ -3,6 +3,7 @@
 
 use std::io::Read;
 
+use super::bounds::ROWS_AHEAD_MAX;
 use super::table::{Table, shown};
 use super::trajectory_csv::{body, is_at, time};
 use crate::error::{Error, Result};
@@ -73,9 +74,12 @@ pub(super) fn misplaced<R: Read>(
     Ok(here.wrong(message))
 }
 
-/// Whether a row stands in what is left of a table. A row that cannot be read ends the search.
+/// Whether a row stands in what follows in a table. A row that cannot be read ends the search.
 fn comes_later<R: Read>(table: &mut Table<'_, R>, scene: &Scene, due: Due) -> bool {
-    while table.advance().unwrap_or(false) {
+    for _ in 0..ROWS_AHEAD_MAX {
+        if !table.advance().unwrap_or(false) {
+            return false;
+        }
         let is_due = body(table) == scene.bodies[due.body].name
             && time(table).is_ok_and(|time| is_at(scene, due.sample, time));
         if is_due {

@@ -3,13 +3,15 @@
 use std::io::Read;
 
 use crate::error::{Error, Result, harmless};
+use crate::input::{RowEnd, Rows};
 
 /// Characters of a foreign text that a message shows, at most.
 const SHOWN_MAX: usize = 80;
 
 /// A CSV file that is being read row by row.
 pub(super) struct Table<'a, R> {
-    reader: csv::Reader<R>,
+    reader: csv::Reader<Rows<R>>,
+    row_end: RowEnd,
     header: &'static [&'static str],
     file: &'a str,
     row: csv::StringRecord,
@@ -18,8 +20,10 @@ pub(super) struct Table<'a, R> {
 impl<'a, R: Read> Table<'a, R> {
     /// Opens a table that must have this header; `file` is its name in messages.
     pub fn open(input: R, header: &'static [&'static str], file: &'a str) -> Result<Self> {
+        let (rows, row_end) = Rows::new(input);
         let mut table = Self {
-            reader: csv::Reader::from_reader(input),
+            reader: csv::Reader::from_reader(rows),
+            row_end,
             header,
             file,
             row: csv::StringRecord::new(),
@@ -41,6 +45,7 @@ impl<'a, R: Read> Table<'a, R> {
 
     /// Reads the next row; false at the end of the file.
     pub fn advance(&mut self) -> Result<bool> {
+        self.row_end.tell();
         let read = self.reader.read_record(&mut self.row);
         read.map_err(|wrong| self.unreadable(&wrong))
     }
@@ -79,8 +84,10 @@ impl<'a, R: Read> Table<'a, R> {
     }
 
     fn unreadable(&self, wrong: &csv::Error) -> Error {
-        let line = wrong.position().map_or(1, csv::Position::line);
+        let place = wrong.position().unwrap_or(self.reader.position());
+        let line = place.line();
         let message = match wrong.kind() {
+            csv::ErrorKind::Io(wrong) => wrong.to_string(),
             csv::ErrorKind::UnequalLengths {
                 expected_len, len, ..
             } => {

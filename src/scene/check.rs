@@ -3,15 +3,13 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use super::bounds::{BODIES_MAX, LOOKS_MAX, SAMPLES_MAX, STATES_MAX};
 use super::fault::{
     Fault, FieldPath, fault, finite, finite_vector, fraction, not_negative, positive,
 };
-use super::overlap::overlaps;
+use super::overlap::survey;
 use super::{Effects, Scene, Spring};
 use crate::error::{Error, Result, harmless};
-
-/// Samples times bodies that a recording may hold: 2 GB of states.
-const STATES_MAX: f64 = 4e7;
 
 /// Characters in a name, at most.
 const NAME_MAX: usize = 200;
@@ -27,8 +25,10 @@ pub enum SceneWarning {
         body_b: String,
         /// Depth of the overlap, scene length unit.
         depth: f64,
-        /// How many pairs overlap.
-        pairs: usize,
+        /// How many pairs overlap, as far as was looked.
+        pairs: u64,
+        /// Whether all pairs were looked at; else there may be more, and deeper ones.
+        all: bool,
     },
     /// A sphere starts beyond a cushion.
     OutsideAtStart {
@@ -45,10 +45,12 @@ impl fmt::Display for SceneWarning {
                 body_b,
                 depth,
                 pairs,
+                all,
             } => write!(
                 f,
-                "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
-                 engines push them apart, each in its own way; move them apart for a comparison of motion"
+                "{}{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
+                 engines push them apart, each in its own way; move them apart for a comparison of motion",
+                if *all { "" } else { "more than " }
             ),
             Self::OutsideAtStart { body } => write!(
                 f,
@@ -95,6 +97,13 @@ impl Scene {
                 "add at least one [[bodies]] table",
             ));
         }
+        if self.bodies.len() > BODIES_MAX {
+            return Err(fault(
+                root().key("bodies"),
+                format!("{} bodies", self.bodies.len()),
+                format!("a scene has at most {BODIES_MAX}; take fewer"),
+            ));
+        }
         let mut names = HashMap::new();
         for (index, body) in self.bodies.iter().enumerate() {
             let path = root().key("bodies").index(index);
@@ -129,6 +138,16 @@ impl Scene {
         let samples = (self.duration / self.sample_every).round();
         #[allow(clippy::cast_precision_loss, reason = "a bound, not a result")]
         let states = samples * self.bodies.len().max(1) as f64;
+        if samples > SAMPLES_MAX {
+            return Err(fault(
+                FieldPath::default().key("sample_every"),
+                format!("{} s", self.sample_every),
+                format!(
+                    "that makes {samples:.3e} samples, more than {SAMPLES_MAX:.0e}; sample less \
+                     often or shorten `duration`"
+                ),
+            ));
+        }
         if states > STATES_MAX {
             return Err(fault(
                 FieldPath::default().key("sample_every"),
@@ -174,13 +193,13 @@ impl Scene {
                 .iter()
                 .map(|body| (body.position.into(), body.radius))
                 .collect();
-            let overlaps = overlaps(&spheres);
-            let deepest = overlaps.iter().max_by(|a, b| a.depth.total_cmp(&b.depth));
-            warnings.extend(deepest.map(|deepest| SceneWarning::OverlapAtStart {
+            let found = survey(&spheres, LOOKS_MAX);
+            warnings.extend(found.deepest.map(|deepest| SceneWarning::OverlapAtStart {
                 body_a: self.bodies[deepest.a].name.clone(),
                 body_b: self.bodies[deepest.b].name.clone(),
                 depth: deepest.depth,
-                pairs: overlaps.len(),
+                pairs: found.pairs,
+                all: found.all,
             }));
         }
         warnings

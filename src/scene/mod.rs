@@ -1,5 +1,6 @@
 //! *What* happens: bodies, units and effects, as a scene file says it or a generator makes it.
 
+mod bounds;
 mod check;
 mod effects;
 pub(crate) mod fault;
@@ -8,6 +9,8 @@ pub mod generate;
 pub mod overlap;
 mod units;
 
+pub use bounds::BODIES_MAX;
+pub(crate) use bounds::{LOOKS_MAX, TEXT_BYTES_MAX};
 pub use check::SceneWarning;
 pub use effects::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Spring};
 pub use fault::{Fault, FieldPath, PathStep};

@@ -1,6 +1,7 @@
 //! The questions that need many runs.
 
 pub mod bodies;
+mod bounds;
 mod breaches;
 pub mod check;
 pub mod cost;
@@ -17,6 +18,7 @@ mod stopwatch;
 mod summary;
 mod tracks;
 
+pub use bounds::{BUDGET_MAX, PHASES_MAX, REPETITIONS_MAX, RUNS_MAX};
 pub use breaches::{Breach, Excess, breaches};
 pub use effects::{
     Change, Difference, Effect, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects,

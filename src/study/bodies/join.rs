@@ -1,23 +1,24 @@
 //! Points that another build has measured.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::{BodiesOptions, BodiesPoint};
 use crate::engine::build;
 use crate::error::{Error, Result};
+use crate::input::{self, Rows, STORED_BYTES_MAX};
 
 /// Reads a `bodies.csv`.
 ///
 /// # Errors
 /// [`Error::Read`] and [`Error::Table`] with the file, and the line where there is one.
 fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
-    let input = File::open(file).map_err(|source| Error::read(file, source))?;
-    let mut table = csv::Reader::from_reader(input);
-    let rows = table.deserialize();
-    let points: Vec<BodiesPoint> = rows
-        .collect::<std::result::Result<_, csv::Error>>()
-        .map_err(|wrong| complaint(file, &wrong))?;
+    let (rows, row_end) = Rows::new(input::open(file, STORED_BYTES_MAX)?);
+    let mut table = csv::Reader::from_reader(rows);
+    let mut points: Vec<BodiesPoint> = Vec::new();
+    for point in table.deserialize() {
+        points.push(point.map_err(|wrong| complaint(file, &wrong))?);
+        row_end.tell();
+    }
     if points.is_empty() {
         return Err(Error::Table {
             file: file.display().to_string(),
@@ -34,6 +35,7 @@ fn complaint(file: &Path, wrong: &csv::Error) -> Error {
         line: wrong.position().map_or(1, csv::Position::line),
         message: match wrong.kind() {
             csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+            csv::ErrorKind::Io(wrong) => wrong.to_string(),
             _ => wrong.to_string(),
         },
     }

@@ -1,14 +1,14 @@
 //! `drift/workers.toml`: which versions of Rapier there are workers of, and what is known of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::{Measure, Verdict};
 use crate::error::{Error, Result};
+use crate::input;
 use crate::scene::fault::fault;
-use crate::scene::{Fault, FieldPath, parse_checked};
+use crate::scene::{Fault, FieldPath, TEXT_BYTES_MAX, parse_checked};
 
 /// The file in the folder of workers.
 const FILE: &str = "workers.toml";
@@ -84,10 +84,8 @@ impl Workers {
                 ),
             });
         }
-        let bytes = fs::read(&path).map_err(|source| Error::read(&path, source))?;
-        let file = path.display().to_string();
-        let text = String::from_utf8(bytes).map_err(|wrong| Error::not_utf8(&file, &wrong))?;
-        Self::parse(&text, &file, folder)
+        let text = input::text(&path, TEXT_BYTES_MAX)?;
+        Self::parse(&text, &path.display().to_string(), folder)
     }
 
     /// Parses the text of `workers.toml`; `file` is its name in messages, `folder` holds the
