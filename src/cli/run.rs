@@ -7,7 +7,7 @@ use super::output::{say, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
 use crate::report::{Folder, Place, findings, write_comparison};
-use crate::study::side_by_side;
+use crate::study::{fits, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -39,6 +39,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(&case.scene, &specs)?;
+    fits(&case.scene, specs.len() + usize::from(case.truth.is_some()))?;
     let folder = Folder::open(&out)?;
     let bar = spinner(&case.scene.name, args.quiet);
     let comparison = side_by_side(&case, &specs, args.engines.dt)?;

@@ -22,8 +22,11 @@ pub(crate) const SAMPLES_MAX: f64 = 2e5;
 pub(crate) const STATES_MAX: f64 = 3e6;
 
 /// Pairs of spheres that are looked at for overlaps at the start: each takes some ns, so that
-/// this is half a second. Up to 10,000 bodies all pairs are fewer.
-pub(crate) const LOOKS_MAX: u64 = 50_000_000;
+/// this is a fifth of a second. Up to 6,000 bodies all pairs are fewer.
+pub(crate) const LOOKS_MAX: u64 = 20_000_000;
+
+/// Overlaps in a list: 100 MB.
+pub(super) const OVERLAPS_MAX: usize = 4_000_000;
 
 /// Where a text goes past what is parsed, and how.
 pub(super) fn past_bounds(text: &str) -> Option<(usize, String)> {

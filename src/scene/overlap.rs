@@ -4,6 +4,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 
+use super::bounds::OVERLAPS_MAX;
+
 /// Two overlapping spheres, `a < b`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
@@ -92,11 +94,18 @@ fn for_each_near(
     ControlFlow::Continue(())
 }
 
-/// Every overlapping pair.
+/// Every overlapping pair; of more than four million, so many of them.
 #[must_use]
 pub fn overlaps(spheres: &[(Vector3<f64>, f64)]) -> Vec<Overlap> {
     let mut found = Vec::new();
-    for_each_overlap(spheres, |overlap| found.push(overlap));
+    let _ = for_each_near(spheres, |a, b| {
+        found.extend(overlap(spheres, a, b));
+        if found.len() < OVERLAPS_MAX {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    });
     found
 }
 

@@ -1,6 +1,10 @@
 //! How much a study may be asked to do. More is a slip of the pen: it would take days, and the
 //! memory for it is taken at the start.
 
+/// States of all recordings that a comparison holds, 48 bytes each: 580 MB. The recordings are
+/// those of its voices and two more, by which `exact` certifies one.
+pub(super) const STATES_COMPARED_MAX: usize = 12_000_000;
+
 /// Rounds of timing. Each keeps 8 bytes a job: 80 kB a job.
 pub const REPETITIONS_MAX: usize = 10_000;
 

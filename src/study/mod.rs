@@ -27,7 +27,7 @@ pub use machine::Machine;
 pub use made::Made;
 pub use median::median;
 pub use overhead::Overhead;
-pub use side_by_side::{Refusal, SideBySide, Voice, side_by_side};
+pub use side_by_side::{Refusal, SideBySide, Voice, fits, side_by_side};
 pub use stopwatch::{PAIRS_MIN, Price, ROUNDS_MIN, Ratio, Timing, paired_ratio};
 pub use summary::{DisagreementSummary, PairSummary, Summary, VoiceSummary};
 pub use tracks::{Track, track};
