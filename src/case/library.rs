@@ -62,6 +62,7 @@ impl Library {
     pub fn names(&self) -> Result<Vec<String>> {
         let mut names = match self {
             Self::Folder(folder) => {
+                is_there(folder)?;
                 let unreadable = |source| Error::read(folder, source);
                 let mut names = Vec::new();
                 for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -185,8 +186,13 @@ impl Library {
                         path: path.display().to_string(),
                         bytes,
                     })),
-                    Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => Ok(None),
-                    Err(wrong) => Err(Error::read(&path, wrong)),
+                    Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => {
+                        is_there(folder).map(|()| None)
+                    }
+                    Err(wrong) => {
+                        is_there(folder)?;
+                        Err(Error::read(&path, wrong))
+                    }
                 }
             }
             Self::Embedded => Ok(file_in(&EMBEDDED, case, file)),
@@ -211,6 +217,20 @@ impl Library {
             hint,
         }
     }
+}
+
+/// A folder that is not there holds no case, but that is not what is wrong.
+fn is_there(folder: &Path) -> Result<()> {
+    let what = match std::fs::metadata(folder) {
+        Ok(found) if found.is_dir() => return Ok(()),
+        Ok(_) => "it is no folder; name a folder of cases",
+        Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => {
+            "there is no such folder; name a folder of cases"
+        }
+        Err(wrong) => return Err(Error::read(folder, wrong)),
+    };
+    let source = std::io::Error::new(std::io::ErrorKind::NotFound, what);
+    Err(Error::read(folder, source))
 }
 
 /// The names of the cases compiled in.

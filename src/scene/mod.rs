@@ -1,12 +1,13 @@
 //! *What* happens: bodies, units and effects, as a scene file says it or a generator makes it.
 
-mod check;
+pub(crate) mod check;
 mod effects;
 pub(crate) mod fault;
 mod file;
 pub mod generate;
 pub mod overlap;
 mod units;
+mod words;
 
 pub use check::SceneWarning;
 pub use effects::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Spring};

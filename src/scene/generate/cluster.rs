@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Random;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number};
 use crate::scene::{Attraction, Body, Contact, Effects, LengthUnit, Scene, Units};
 
 /// Spheres placed at random in a ball, none overlapping, that attract and collide.
@@ -76,7 +76,9 @@ impl Cluster {
             name: format!("cluster-{}-seed-{}", self.count, self.seed),
             title: Some(format!("{} attracting spheres at random", self.count)),
             source: Some(format!(
-                "lecture, collisions: many particles under gravitation; carom scenes generate cluster --seed {}",
+                "lecture, collisions: many particles under gravitation; carom scenes generate cluster --count {} --extent {} --seed {}",
+                self.count,
+                number(self.extent),
                 self.seed
             )),
             watch: None,
@@ -116,7 +118,7 @@ impl Cluster {
             .find(free)
             .ok_or_else(|| Error::Argument {
                 argument: "extent",
-                found: self.extent.to_string(),
+                found: number(self.extent),
                 remedy: format!(
                     "sphere {} finds no free place; make the extent larger",
                     placed.len()

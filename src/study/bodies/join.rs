@@ -1,6 +1,7 @@
 //! Points that another build has measured.
 
 use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{BodiesOptions, BodiesPoint};
@@ -29,6 +30,9 @@ fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
 }
 
 fn complaint(file: &Path, wrong: &csv::Error) -> Error {
+    if let csv::ErrorKind::Io(wrong) = wrong.kind() {
+        return Error::read(file, io::Error::new(wrong.kind(), wrong.to_string()));
+    }
     Error::Table {
         file: file.display().to_string(),
         line: wrong.position().map_or(1, csv::Position::line),
