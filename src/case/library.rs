@@ -65,6 +65,7 @@ impl Library {
     pub fn names(&self) -> Result<Vec<String>> {
         let mut names = match self {
             Self::Folder(folder) => {
+                is_there(folder)?;
                 let unreadable = |source| Error::read(folder, source);
                 let mut names = Vec::new();
                 for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -181,12 +182,17 @@ impl Library {
         match self {
             Self::Folder(folder) => {
                 let path = folder.join(case).join(file);
-                let is_there = path.try_exists();
-                let is_there = is_there.map_err(|wrong| Error::read(&path, wrong))?;
-                Ok(is_there.then(|| CaseFile {
-                    path: path.display().to_string(),
-                    place: Place::OnDisk(path),
-                }))
+                match path.try_exists() {
+                    Ok(true) => Ok(Some(CaseFile {
+                        path: path.display().to_string(),
+                        place: Place::OnDisk(path),
+                    })),
+                    Ok(false) => is_there(folder).map(|()| None),
+                    Err(wrong) => {
+                        is_there(folder)?;
+                        Err(Error::read(&path, wrong))
+                    }
+                }
             }
             Self::Embedded => Ok(file_in(&EMBEDDED, case, file)),
             Self::EmbeddedHard => Ok(file_in(&EMBEDDED_HARD, case, file)),
@@ -210,6 +216,20 @@ impl Library {
             hint,
         }
     }
+}
+
+/// A folder that is not there holds no case, but that is not what is wrong.
+fn is_there(folder: &Path) -> Result<()> {
+    let what = match std::fs::metadata(folder) {
+        Ok(found) if found.is_dir() => return Ok(()),
+        Ok(_) => "it is no folder; name a folder of cases",
+        Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => {
+            "there is no such folder; name a folder of cases"
+        }
+        Err(wrong) => return Err(Error::read(folder, wrong)),
+    };
+    let source = std::io::Error::new(std::io::ErrorKind::NotFound, what);
+    Err(Error::read(folder, source))
 }
 
 /// The names of the cases compiled in.

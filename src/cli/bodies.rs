@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::output::{progress, say, warn};
+use super::output::{progress, say, say_lines, warn};
 use crate::engine::{DEFAULT_DT, EngineSpec};
 use crate::error::{Error, Result};
 use crate::report::{Folder, bodies_findings, bodies_table, write_bodies};
@@ -24,16 +24,21 @@ pub(super) struct BodiesArgs {
     )]
     pub sizes: Vec<usize>,
     /// Step of the engines, s; with --bodies
-    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true, requires = "sizes")]
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true)]
     dt: f64,
     /// Share of the box that the spheres fill; with --bodies
-    #[arg(long, value_name = "SHARE", default_value_t = 0.1, requires = "sizes")]
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.1,
+        allow_negative_numbers = true
+    )]
     filling: f64,
     /// Take the walls away before the clock starts; with --bodies
-    #[arg(long, requires = "sizes")]
+    #[arg(long)]
     open: bool,
     /// A bodies.csv that another build of carom has measured, to stand beside; with --bodies
-    #[arg(long = "join", value_name = "FILE", requires = "sizes")]
+    #[arg(long = "join", value_name = "FILE")]
     joined: Vec<PathBuf>,
 }
 
@@ -95,7 +100,7 @@ impl BodiesArgs {
         if quiet {
             return Ok(());
         }
-        say(bodies_table(&study))?;
+        say_lines(bodies_table(&study))?;
         for finding in bodies_findings(&study) {
             say(finding)?;
         }

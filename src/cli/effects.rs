@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::{EngineArgs, LibraryArgs};
-use super::output::{say, spinner, warn};
+use super::output::{say, say_json, say_lines, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
 use crate::report::{Folder, effects_findings, effects_table, write_effects};
@@ -76,9 +76,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&study)?);
+        return say_json(&study);
     }
-    say(effects_table(&study))?;
+    say_lines(effects_table(&study))?;
     for finding in effects_findings(&study) {
         say(finding)?;
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::{EngineArgs, LibraryArgs};
-use super::output::{say, spinner, warn};
+use super::output::{say, say_json, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
 use crate::report::{Folder, Place, findings, write_comparison};
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
     let names: Vec<_> = summary
         .voices

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::chosen;
-use super::output::{progress, say};
+use super::output::{progress, say, say_json, say_lines};
 use super::studies::Order;
 use crate::case::Library;
 use crate::engine::{EngineSpec, engines};
@@ -137,9 +137,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
-    say(stability_table(&summary))?;
+    say_lines(stability_table(&summary))?;
     for finding in stability_findings(&study, &summary) {
         say(finding)?;
     }

@@ -4,9 +4,9 @@
 use std::io::Read;
 
 use super::bounds::ROWS_AHEAD_MAX;
-use super::table::{Table, shown};
+use super::table::Table;
 use super::trajectory_csv::{body, is_at, time};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number, quoted};
 use crate::scene::Scene;
 
 /// Names that a message lists, at most.
@@ -28,27 +28,28 @@ pub(super) fn misplaced<R: Read>(
 ) -> Result<Error> {
     let here = table.place();
     if due.sample > scene.sample_count() {
-        let message = format!("goes on past the end, t = {} s", scene.duration);
+        let message = format!("goes on past the end, t = {} s", number(scene.duration));
         return Ok(here.wrong(message));
     }
-    let found_time = time(table)?;
-    let (due_time, due_name) = (scene.sample_time(due.sample), &scene.bodies[due.body].name);
+    let found = time(table)?;
+    let due_name = &scene.bodies[due.body].name;
+    let (found_time, due_time) = (number(found), number(scene.sample_time(due.sample)));
     let Some(found_body) = scene.body_index(body(table)) else {
         let message = format!(
             "body `{}` where `{due_name}` of t = {due_time} s is due: no body is called so; \
              the scene has {}",
-            shown(body(table)),
+            quoted(body(table)),
             names(scene)
         );
         return Ok(here.wrong(message));
     };
     let name = &scene.bodies[found_body].name;
-    let Some(found_sample) = sample_at(scene, found_time) else {
+    let Some(found_sample) = sample_at(scene, found) else {
         let message = format!(
             "time {} s where {due_time} s is due: off the scene's grid, a sample every {} s up to {} s",
-            shown(table.text(0)),
-            scene.sample_every,
-            scene.duration
+            quoted(table.text(0)),
+            number(scene.sample_every),
+            number(scene.duration)
         );
         return Ok(here.wrong(message));
     };

@@ -1,12 +1,10 @@
 //! Tables read as streams, with a place for every complaint.
 
-use std::io::Read;
+use std::io::{self, Read};
+use std::path::Path;
 
-use crate::error::{Error, Result, harmless};
+use crate::error::{Error, Result, quoted};
 use crate::input::{RowEnd, Rows};
-
-/// Characters of a foreign text that a message shows, at most.
-const SHOWN_MAX: usize = 80;
 
 /// A CSV file that is being read row by row.
 pub(super) struct Table<'a, R> {
@@ -38,7 +36,7 @@ impl<'a, R: Read> Table<'a, R> {
             format!("nothing is there; the header must be `{due}`")
         } else {
             let found = found.iter().collect::<Vec<_>>().join(",");
-            format!("the header must be `{due}`, not `{}`", shown(&found))
+            format!("the header must be `{due}`, not `{}`", quoted(&found))
         };
         Err(table.at(1).wrong(message))
     }
@@ -63,7 +61,7 @@ impl<'a, R: Read> Table<'a, R> {
             let name = self.header[column];
             self.wrong(format!(
                 "`{name}` is `{}`: not a finite number",
-                shown(text)
+                quoted(text)
             ))
         })
     }
@@ -84,10 +82,12 @@ impl<'a, R: Read> Table<'a, R> {
     }
 
     fn unreadable(&self, wrong: &csv::Error) -> Error {
-        let place = wrong.position().unwrap_or(self.reader.position());
-        let line = place.line();
+        if let csv::ErrorKind::Io(wrong) = wrong.kind() {
+            let wrong = io::Error::new(wrong.kind(), wrong.to_string());
+            return Error::read(Path::new(self.file), wrong);
+        }
+        let line = wrong.position().map_or(1, csv::Position::line);
         let message = match wrong.kind() {
-            csv::ErrorKind::Io(wrong) => wrong.to_string(),
             csv::ErrorKind::UnequalLengths {
                 expected_len, len, ..
             } => {
@@ -119,14 +119,4 @@ impl Place<'_> {
             message,
         }
     }
-}
-
-/// Text of a foreign file as a message shows it: without control characters, and not all of it
-/// where it is long.
-pub(super) fn shown(text: &str) -> String {
-    let mut start: String = text.chars().take(SHOWN_MAX).collect();
-    if start.len() < text.len() {
-        start.push('…');
-    }
-    harmless(&start)
 }

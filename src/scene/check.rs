@@ -9,7 +9,7 @@ use super::fault::{
 };
 use super::overlap::survey;
 use super::{Effects, Scene, Spring};
-use crate::error::{Error, Result, harmless};
+use crate::error::{Error, Result, is_invisible, number, quoted};
 
 /// Characters in a name, at most.
 const NAME_MAX: usize = 200;
@@ -75,16 +75,8 @@ impl Scene {
             ("watch", &self.watch),
         ];
         for (key, text) in texts {
-            if text
-                .as_ref()
-                .is_some_and(|text| text.chars().any(is_invisible))
-            {
-                let remedy = "write it in one line, without control characters";
-                return Err(fault(
-                    root().key(key),
-                    "text with control characters",
-                    remedy,
-                ));
+            if let Some(text) = text {
+                check_text(&root().key(key), text)?;
             }
         }
         positive(&root().key("duration"), self.duration)?;
@@ -111,7 +103,7 @@ impl Scene {
             if let Some(first) = names.insert(body.name.as_str(), index) {
                 return Err(fault(
                     path.key("name"),
-                    format!("`{}`, the name of bodies[{first}] too", body.name),
+                    format!("`{}`, the name of bodies[{first}] too", quoted(&body.name)),
                     "give every body a name of its own",
                 ));
             }
@@ -151,7 +143,7 @@ impl Scene {
         if states > STATES_MAX {
             return Err(fault(
                 FieldPath::default().key("sample_every"),
-                format!("{} s", self.sample_every),
+                format!("{} s", number(self.sample_every)),
                 format!(
                     "that makes {states:.3e} states to keep (samples x bodies), more than {STATES_MAX:.0e}; \
                      sample less often or shorten `duration`"
@@ -163,11 +155,11 @@ impl Scene {
         if (nearest - self.duration).abs() > 1e-9 * self.duration {
             return Err(fault(
                 path,
-                format!("{} s", self.duration),
+                format!("{} s", number(self.duration)),
                 format!(
                     "make it a multiple of sample_every = {} s, such as {} s",
-                    self.sample_every,
-                    samples.max(1.0) * self.sample_every
+                    number(self.sample_every),
+                    number(samples.max(1.0) * self.sample_every)
                 ),
             ));
         }
@@ -252,7 +244,7 @@ fn check_spring(
         if !names.contains_key(name.as_str()) {
             return Err(fault(
                 path.clone().key("between").index(end),
-                format!("`{}`, and no body has that name", harmless(name)),
+                format!("`{}`, and no body has that name", quoted(name)),
                 "name two bodies of this scene",
             ));
         }
@@ -260,7 +252,7 @@ fn check_spring(
     if spring.between[0] == spring.between[1] {
         return Err(fault(
             path.clone().key("between"),
-            format!("`{}` twice", spring.between[0]),
+            format!("`{}` twice", quoted(&spring.between[0])),
             "a spring joins two different bodies",
         ));
     }
@@ -269,14 +261,27 @@ fn check_spring(
     not_negative(&path.clone().key("damping"), spring.damping)
 }
 
-fn check_scene_name(name: &str) -> std::result::Result<(), Fault> {
+/// Text of one line for people, wherever a file of data has some.
+pub(crate) fn check_text(path: &FieldPath, text: &str) -> std::result::Result<(), Fault> {
+    if !text.chars().any(is_invisible) {
+        return Ok(());
+    }
+    Err(fault(
+        path.clone(),
+        "text with control characters",
+        "write it in one line, without control characters",
+    ))
+}
+
+/// A name is a folder name too.
+pub(crate) fn check_scene_name(name: &str) -> std::result::Result<(), Fault> {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if !name.is_empty() && name.len() <= 100 && name.chars().all(allowed) {
         return Ok(());
     }
     Err(fault(
         FieldPath::default().key("name"),
-        format!("`{}`", harmless(name)),
+        format!("`{}`", quoted(name)),
         "use 1 to 100 of the characters a-z, 0-9 and `-`; it is a folder name too",
     ))
 }
@@ -288,7 +293,7 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
     if name.chars().any(is_invisible) {
         return Err(fault(
             path.clone(),
-            format!("`{}`", harmless(name)),
+            format!("`{}`", quoted(name)),
             "leave out control characters such as tabs, line ends and marks of direction",
         ));
     }
@@ -300,15 +305,4 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
         ));
     }
     Ok(())
-}
-
-/// Control characters, and marks of Unicode that show as nothing but change how text is laid
-/// out.
-fn is_invisible(c: char) -> bool {
-    let marks = [
-        '\u{200b}'..='\u{200f}',
-        '\u{2028}'..='\u{202e}',
-        '\u{2060}'..='\u{206f}',
-    ];
-    c.is_control() || c == '\u{feff}' || marks.iter().any(|range| range.contains(&c))
 }

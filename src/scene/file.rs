@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::bounds::{TEXT_BYTES_MAX, past_bounds};
+use super::words::in_plain_words;
 use super::{Fault, FieldPath, PathStep, Scene};
 use crate::error::{Error, Result};
 use crate::input;
@@ -52,7 +53,8 @@ pub(crate) fn parse_checked<T: DeserializeOwned>(
     }
     let data: T = toml::from_str(text).map_err(|wrong| {
         let byte = wrong.span().map_or(0, |span| span.start);
-        complaint(byte, in_plain_words(wrong.message()))
+        let source = text.get(byte..).unwrap_or_default();
+        complaint(byte, in_plain_words(wrong.message(), source))
     })?;
     check(&data).map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
     Ok(data)
@@ -121,18 +123,6 @@ fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     (line, column)
-}
-
-/// The parser's message in one line, without the names of Rust's types.
-fn in_plain_words(message: &str) -> String {
-    let words = message.split_whitespace().map(|word| match word {
-        "f64" | "f64," => "a number",
-        "i128" | "i64" => "an integer",
-        "map," => "table,",
-        "sequence" => "array",
-        word => word,
-    });
-    words.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Vector3;
 
 use super::Random;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number};
 use crate::scene::{Attraction, BODIES_MAX, Body, Contact, Effects, LengthUnit, Scene, Units};
 
 /// Spheres placed at random in a ball, none overlapping, that attract and collide.
@@ -74,7 +74,9 @@ impl Cluster {
             name: format!("cluster-{}-seed-{}", self.count, self.seed),
             title: Some(format!("{} attracting spheres at random", self.count)),
             source: Some(format!(
-                "lecture, collisions: many particles under gravitation; carom scenes generate cluster --seed {}",
+                "lecture, collisions: many particles under gravitation; carom scenes generate cluster --count {} --extent {} --seed {}",
+                self.count,
+                number(self.extent),
                 self.seed
             )),
             watch: None,
@@ -123,7 +125,7 @@ impl Cluster {
         for (argument, value) in above_zero {
             if !(value.is_finite() && value > 0.0) {
                 let remedy = "give a finite number above 0".to_owned();
-                return wrong(argument, format!("{value:?}"), remedy);
+                return wrong(argument, number(value), remedy);
             }
         }
         #[allow(clippy::cast_precision_loss, reason = "some ten thousand")]
@@ -135,7 +137,7 @@ impl Cluster {
                  larger",
                 self.count
             );
-            return wrong("extent", format!("{:?}", self.extent), remedy);
+            return wrong("extent", number(self.extent), remedy);
         }
         Ok(())
     }
@@ -152,7 +154,7 @@ impl Cluster {
         }
         Err(Error::Argument {
             argument: "extent",
-            found: format!("{:?}", self.extent),
+            found: number(self.extent),
             remedy: format!(
                 "sphere {} finds no free place in {tries} tries; make the extent larger",
                 placed.spheres.len()

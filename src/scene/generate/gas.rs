@@ -1,7 +1,7 @@
 //! An elastic gas of hard spheres that starts on a lattice.
 
 use super::Random;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number};
 use crate::scene::{BODIES_MAX, Body, Contact, Cushions, Effects, LengthUnit, Scene, Units};
 
 /// Equal spheres on a face-centred cubic lattice in a closed cubic box, with random velocities.
@@ -67,7 +67,7 @@ impl Gas {
         if !half.is_finite() {
             return Err(Error::Argument {
                 argument: "filling",
-                found: format!("{:e}", self.filling),
+                found: number(self.filling),
                 remedy: "the box is too large for a number; give a larger fraction".into(),
             });
         }
@@ -75,7 +75,7 @@ impl Gas {
         if constant * 0.5_f64.sqrt() <= 2.0 * RADIUS {
             return Err(Error::Argument {
                 argument: "filling",
-                found: self.filling.to_string(),
+                found: number(self.filling),
                 remedy: format!(
                     "{} cells an edge do not fit between the walls; give a smaller fraction or more cells",
                     self.cells
@@ -85,7 +85,12 @@ impl Gas {
         let scene = Scene {
             name: format!("gas-{}", 4 * self.cells.pow(3)),
             title: Some(format!("elastic gas of {} spheres", 4 * self.cells.pow(3))),
-            source: Some(format!("carom scenes generate gas --seed {}", self.seed)),
+            source: Some(format!(
+                "carom scenes generate gas --cells {} --filling {} --seed {}",
+                self.cells,
+                number(self.filling),
+                self.seed
+            )),
             watch: None,
             duration: 1.0,
             sample_every: 0.0625,
@@ -150,7 +155,8 @@ impl Gas {
         scene.name = format!("gas-{count}");
         scene.title = Some(format!("elastic gas of {count} spheres"));
         scene.source = Some(format!(
-            "carom scenes generate gas --count {count} --filling {filling} --seed {seed}"
+            "carom scenes generate gas --count {count} --filling {} --seed {seed}",
+            number(filling)
         ));
         scene.checked()?;
         Ok(scene)
@@ -193,7 +199,7 @@ fn check_filling(filling: f64) -> Result<()> {
     }
     Err(Error::Argument {
         argument: "filling",
-        found: filling.to_string(),
+        found: number(filling),
         remedy: format!("give a fraction above 0 and below {packed:.4}, close packing"),
     })
 }

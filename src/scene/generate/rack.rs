@@ -1,7 +1,7 @@
 //! A rack of balls and a cue ball that breaks it.
 
 use super::Random;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number};
 use crate::scene::overlap::survey;
 use crate::scene::{Body, Contact, Cushions, Drag, Effects, LengthUnit, Rest, Scene, Units};
 
@@ -90,7 +90,7 @@ impl Rack {
         let scene = Scene {
             name: format!("rack-{}", bodies.len() - 1),
             title: Some(format!("break of a rack of {} balls", bodies.len() - 1)),
-            source: Some(format!("carom scenes generate rack --seed {}", self.seed)),
+            source: Some(self.command()),
             watch: None,
             duration: 4.0,
             sample_every: 0.0625,
@@ -123,6 +123,23 @@ impl Rack {
         }
         Ok(scene)
     }
+
+    /// The command that makes it again; a seed says nothing where no ball is moved.
+    fn command(&self) -> String {
+        let gap = number(self.gap);
+        let rack = format!(
+            "carom scenes generate rack --rows {} --gap {gap}",
+            self.rows
+        );
+        if self.jitter == 0.0 {
+            return rack;
+        }
+        format!(
+            "{rack} --jitter {} --seed {}",
+            number(self.jitter),
+            self.seed
+        )
+    }
 }
 
 fn check_length(argument: &'static str, length: f64) -> Result<()> {
@@ -131,7 +148,7 @@ fn check_length(argument: &'static str, length: f64) -> Result<()> {
     }
     Err(Error::Argument {
         argument,
-        found: format!("{length:?}"),
+        found: number(length),
         remedy: "give a length of 0 or more, mm".into(),
     })
 }

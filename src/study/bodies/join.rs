@@ -1,5 +1,6 @@
 //! Points that another build has measured.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{BodiesOptions, BodiesPoint};
@@ -30,12 +31,14 @@ fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
 }
 
 fn complaint(file: &Path, wrong: &csv::Error) -> Error {
+    if let csv::ErrorKind::Io(wrong) = wrong.kind() {
+        return Error::read(file, io::Error::new(wrong.kind(), wrong.to_string()));
+    }
     Error::Table {
         file: file.display().to_string(),
         line: wrong.position().map_or(1, csv::Position::line),
         message: match wrong.kind() {
             csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
-            csv::ErrorKind::Io(wrong) => wrong.to_string(),
             _ => wrong.to_string(),
         },
     }
