@@ -44,8 +44,8 @@ impl Default for Cluster {
 /// Tries to place one sphere before the recipe is called too dense.
 const TRIES: usize = 10_000;
 
-/// Tries to place all of them: a second.
-const TRIES_IN_ALL: usize = 1_000_000;
+/// Tries to place all of them: half a second.
+const TRIES_IN_ALL: usize = 500_000;
 
 impl Cluster {
     /// Makes the scene.
