@@ -102,7 +102,7 @@ mod tests {
         assert!(past_bounds(&text).is_none());
         let (byte, _) = past_bounds(&format!("{text}[")).unwrap();
         assert_eq!(byte, text.len());
-        let long = "#".repeat(TEXT_BYTES_MAX as usize + 1);
+        let long = "#".repeat(usize::try_from(TEXT_BYTES_MAX).unwrap() + 1);
         assert!(past_bounds(&long).unwrap().1.contains("bytes, more than"));
     }
 }
