@@ -63,8 +63,7 @@ fn signs(text: &[u8]) -> impl Iterator<Item = usize> + '_ {
             had_dot = true;
             !of_number
         }
-        b'0'..=b'9' => false,
-        b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'-' | b'+' => false,
+        b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'-' | b'+' => false,
         0..=b'*' | b',' | b'/' | b':'..=b'@' | b'\\'..=b'^' | b'`' | b'|'..=u8::MAX => {
             had_dot = false;
             false
