@@ -4,9 +4,14 @@
 //! remedy. A simulation that blows up is no error but a result: see
 //! [`Outcome`](crate::recording::Outcome).
 
+mod shown;
+
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
+
+pub(crate) use shown::is_invisible;
+pub use shown::{LINE_MAX, QUOTED_MAX, harmless, number, one_line, quoted};
 
 /// Shorthand for results of carom.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -27,7 +32,7 @@ pub enum Error {
         message: String,
     },
     /// A scene built by code is not a scene.
-    #[error("scene `{scene}`: {message}")]
+    #[error("scene `{}`: {message}", quoted(.scene))]
     Scene {
         /// Name of the scene.
         scene: String,
@@ -80,8 +85,9 @@ pub enum Error {
     },
     /// Points of another build that cannot stand beside those measured now.
     #[error(
-        "{path}: has {what} {found}; join files of other builds, measured with the same --dt, \
-         --filling, --open and --seed"
+        "{path}: has {what} {}; join files of other builds, measured with the same --dt, \
+         --filling, --open and --seed",
+        quoted(.found)
     )]
     Join {
         /// The file.
@@ -92,7 +98,7 @@ pub enum Error {
         found: String,
     },
     /// No engine of that name.
-    #[error("no engine is called `{name}`; there are: {known}")]
+    #[error("no engine is called `{}`; there are: {known}", quoted(.name))]
     UnknownEngine {
         /// The name asked for.
         name: String,
@@ -120,7 +126,7 @@ pub enum Error {
         remedy: String,
     },
     /// A user's solver that cannot be started at all: carom could not run.
-    #[error("solver `{program}` cannot be started: {message}")]
+    #[error("solver `{}` cannot be started: {message}", quoted(.program))]
     SolverStart {
         /// The program.
         program: String,
@@ -150,7 +156,7 @@ pub enum Error {
         name: String,
     },
     /// No study of that name.
-    #[error("no study is called `{name}`; there are: {known}")]
+    #[error("no study is called `{}`; there are: {known}", quoted(.name))]
     UnknownStudy {
         /// The name asked for.
         name: String,
@@ -169,7 +175,8 @@ pub enum Error {
     },
     /// No scene file and no case of that name.
     #[error(
-        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}"
+        "`{}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}",
+        quoted(.name)
     )]
     UnknownCase {
         /// The name asked for.
@@ -178,7 +185,7 @@ pub enum Error {
         hint: String,
     },
     /// A case whose scene has another name than its folder.
-    #[error("{file}: the scene is called `{scene}`; a case's scene has the name of its folder")]
+    #[error("{file}: the scene is called `{}`; a case's scene has the name of its folder", quoted(.scene))]
     CaseName {
         /// The scene file.
         file: String,
@@ -194,7 +201,7 @@ pub enum Error {
         message: String,
     },
     /// A time step that cannot be taken.
-    #[error("time step {dt:?} s: {message}")]
+    #[error("time step {} s: {message}", number(*.dt))]
     Step {
         /// The step asked for.
         dt: f64,
@@ -247,7 +254,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A number that an argument does not allow.
-    #[error("--{argument} {found}: {remedy}")]
+    #[error("--{argument} {}: {remedy}", quoted(.found))]
     Argument {
         /// Name of the argument, without dashes.
         argument: &'static str,
@@ -255,6 +262,22 @@ pub enum Error {
         found: String,
         /// What would be right.
         remedy: String,
+    },
+    /// An option that would have no effect where it stands.
+    #[error("--{option} does nothing {place}; {remedy}")]
+    Idle {
+        /// Name of the option, without dashes.
+        option: &'static str,
+        /// Beside which others it stands, or which are missing.
+        place: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// Words on the command line that carom does not understand.
+    #[error("{message}")]
+    Usage {
+        /// What is wrong, and what would be right.
+        message: String,
     },
     /// A page could not be filled in: a fault of carom's own templates.
     #[error("page template: {0}")]
@@ -309,15 +332,4 @@ impl Error {
             source,
         }
     }
-}
-
-/// Text of foreign origin as a message of one line shows it: what a terminal would obey, or would
-/// not show, is escaped.
-pub(crate) fn harmless(text: &str) -> String {
-    let shown = |c: char| match c {
-        '"' | '\'' | '\\' => c.to_string(),
-        '\t' => ' '.to_string(),
-        c => c.escape_debug().to_string(),
-    };
-    text.chars().map(shown).collect()
 }

@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::output::{progress, say, warn};
+use super::output::{progress, say, say_lines, warn};
 use crate::engine::{DEFAULT_DT, EngineSpec};
 use crate::error::{Error, Result};
 use crate::report::{BODIES_FILES, Output, Replace, bodies_findings, bodies_table, write_bodies};
+use crate::scene::BODIES_MAX;
 use crate::study::Timing;
 use crate::study::bodies::{BodiesOptions, BodiesStudy, Walls, bodies_cost, joined};
-
-/// Fewer bodies hit nothing, more take hours.
-const BODIES: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// What the study of numbers of bodies is asked beyond what every study of cost is.
 #[derive(Debug, clap::Args)]
@@ -26,16 +24,21 @@ pub(super) struct BodiesArgs {
     )]
     pub sizes: Vec<usize>,
     /// Step of the engines, s; with --bodies
-    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true, requires = "sizes")]
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true)]
     dt: f64,
     /// Share of the box that the spheres fill; with --bodies
-    #[arg(long, value_name = "SHARE", default_value_t = 0.1, requires = "sizes")]
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.1,
+        allow_negative_numbers = true
+    )]
     filling: f64,
     /// Take the walls away before the clock starts; with --bodies
-    #[arg(long, requires = "sizes")]
+    #[arg(long)]
     open: bool,
     /// A bodies.csv that another build of carom has measured, to stand beside; with --bodies
-    #[arg(long = "join", value_name = "FILE", requires = "sizes")]
+    #[arg(long = "join", value_name = "FILE")]
     joined: Vec<PathBuf>,
 }
 
@@ -105,7 +108,7 @@ impl BodiesArgs {
         if quiet {
             return Ok(());
         }
-        say(bodies_table(&study))?;
+        say_lines(bodies_table(&study))?;
         for finding in bodies_findings(&study) {
             say(finding)?;
         }
@@ -120,11 +123,11 @@ impl BodiesArgs {
         let mut sizes = self.sizes.clone();
         sizes.sort_unstable();
         sizes.dedup();
-        match sizes.iter().find(|size| !BODIES.contains(size)) {
+        match sizes.iter().find(|size| !(1..=BODIES_MAX).contains(*size)) {
             Some(size) => Err(Error::Argument {
                 argument: "bodies",
                 found: size.to_string(),
-                remedy: format!("give {} to {}", BODIES.start(), BODIES.end()),
+                remedy: format!("give 1 to {BODIES_MAX}"),
             }),
             None => Ok(sizes),
         }

@@ -11,8 +11,8 @@ use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
 use crate::report::{CostReport, Folder, Output, claim_cost};
 use crate::scene::Scene;
-use crate::study::Timing;
 use crate::study::cost::{CostOptions, PHASES_MIN, Stage, Tuning, scene_cost, tune};
+use crate::study::{BUDGET_MAX, PHASES_MAX, REPETITIONS_MAX, RUNS_MAX, Timing};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -115,19 +115,28 @@ fn tuned(
 
 /// Numbers that no study can be made with.
 fn check(args: &Args) -> Result<()> {
-    let phases = format!("give at least {PHASES_MIN}: fewer have no scatter to speak of");
-    let above_zero = || "give a number above 0".to_owned();
-    for (argument, found, least, remedy) in [
-        ("repetitions", args.repetitions as u64, 1, above_zero()),
-        ("budget", args.budget.unwrap_or(1), 1, above_zero()),
-        ("runs", args.runs as u64, 1, above_zero()),
-        ("phases", args.phases as u64, PHASES_MIN as u64, phases),
+    let count = |count: usize| count as u64;
+    for (argument, found, least, most) in [
+        (
+            "repetitions",
+            count(args.repetitions),
+            1,
+            count(REPETITIONS_MAX),
+        ),
+        ("budget", args.budget.unwrap_or(1), 1, BUDGET_MAX),
+        ("runs", count(args.runs), 1, count(RUNS_MAX)),
+        (
+            "phases",
+            count(args.phases),
+            count(PHASES_MIN),
+            count(PHASES_MAX),
+        ),
     ] {
-        if found < least {
+        if !(least..=most).contains(&found) {
             return Err(Error::Argument {
                 argument,
                 found: found.to_string(),
-                remedy,
+                remedy: format!("give {least} to {most}"),
             });
         }
     }

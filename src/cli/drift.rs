@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{LibraryArgs, ReplaceArgs};
-use super::output::{progress, say};
+use super::output::{progress, say, say_json, say_lines};
 use crate::error::Result;
 use crate::report::{DRIFT_FILES, Output, drift_findings, drift_table, write_drift};
 use crate::study::drift::{Workers, drift};
@@ -56,9 +56,9 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     write_drift(&out, &study)?;
     output.commit()?;
     if args.json {
-        say(serde_json::to_string_pretty(&study)?)?;
+        say_json(&study)?;
     } else if !args.quiet {
-        say(drift_table(&study))?;
+        say_lines(drift_table(&study))?;
         for finding in drift_findings(&study) {
             say(finding)?;
         }

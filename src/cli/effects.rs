@@ -3,14 +3,11 @@
 use std::path::PathBuf;
 
 use super::args::{EngineArgs, LibraryArgs, ReplaceArgs};
-use super::output::{say, spinner, warn};
+use super::output::{say, say_json, say_lines, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
 use crate::report::{EFFECTS_FILES, Output, effects_findings, effects_table, write_effects};
-use crate::study::{Change, Timing, effects};
-
-/// Repetitions beyond this are a slip of the pen.
-const REPETITIONS_MAX: usize = 10_000;
+use crate::study::{Change, REPETITIONS_MAX, Timing, effects};
 
 /// The engines unless others are asked for; the exact ones may take long, once for each effect.
 const DEFAULT: [&str; 4] = ["lecture", "rapier", "rapier-f64", "rapier-matched"];
@@ -84,9 +81,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&study)?);
+        return say_json(&study);
     }
-    say(effects_table(&study))?;
+    say_lines(effects_table(&study))?;
     for finding in effects_findings(&study) {
         say(finding)?;
     }

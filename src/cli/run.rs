@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use super::args::{EngineArgs, LibraryArgs, ReplaceArgs};
-use super::output::{say, spinner, warn};
+use super::output::{say, say_json, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
 use crate::report::{Output, Place, claim_comparison, findings, write_comparison};
-use crate::study::side_by_side;
+use crate::study::{fits, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -41,6 +41,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(&case.scene, &specs)?;
+    fits(&case.scene, specs.len() + usize::from(case.truth.is_some()))?;
     let output = Output::open(&out, args.replace.replace())?;
     let folder = output.folder();
     claim_comparison(&folder, &specs)?;
@@ -60,7 +61,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
     let names: Vec<_> = summary
         .voices

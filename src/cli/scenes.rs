@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 
 use super::args::LibraryArgs;
-use super::output::say;
+use super::output::{say, say_json, say_lines};
 use crate::case::{Evidence, Library, scene_text};
 use crate::error::{Error, Result};
 use crate::report::write_file;
+use crate::scene::check::check_scene_name;
 use crate::scene::generate::{Cluster, Gas, Rack};
 use crate::scene::{Scene, parse, to_toml};
 
@@ -73,7 +74,7 @@ enum Recipe {
         #[arg(long, default_value_t = Cluster::default().count)]
         count: usize,
         /// Radius of the ball that holds their centres, m
-        #[arg(long, default_value_t = Cluster::default().extent)]
+        #[arg(long, default_value_t = Cluster::default().extent, allow_negative_numbers = true)]
         extent: f64,
         /// Seed of the random numbers
         #[arg(long, default_value_t = Cluster::default().seed)]
@@ -87,10 +88,10 @@ enum Recipe {
         #[arg(long, default_value_t = Rack::default().rows)]
         rows: usize,
         /// Free distance between neighbours, mm
-        #[arg(long, default_value_t = Rack::default().gap)]
+        #[arg(long, default_value_t = Rack::default().gap, allow_negative_numbers = true)]
         gap: f64,
         /// Each ball is moved by up to this much, mm
-        #[arg(long, default_value_t = Rack::default().jitter)]
+        #[arg(long, default_value_t = Rack::default().jitter, allow_negative_numbers = true)]
         jitter: f64,
         /// Seed of the jitter
         #[arg(long, default_value_t = Rack::default().seed)]
@@ -107,7 +108,7 @@ enum Recipe {
         #[arg(long, conflicts_with = "cells")]
         count: Option<usize>,
         /// Filling fraction
-        #[arg(long, default_value_t = Gas::default().filling)]
+        #[arg(long, default_value_t = Gas::default().filling, allow_negative_numbers = true)]
         filling: f64,
         /// Seed of the velocities
         #[arg(long, default_value_t = Gas::default().seed)]
@@ -123,8 +124,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
             hard: true, json, ..
         } => list(&Library::hard(), *json),
         What::List { library, json, .. } => list(&library.library(), *json),
-        What::Show { case, library } => say(scene_text(case, &library.library())?.trim_end()),
+        What::Show { case, library } => say_lines(scene_text(case, &library.library())?.trim_end()),
         What::New { name, out } => {
+            check_scene_name(name).map_err(|wrong| Error::Scene {
+                scene: name.clone(),
+                message: wrong.to_string(),
+            })?;
             let text = STARTER.replacen("my-scene", name, 1);
             parse(&text, "the new scene")?;
             let file = out
@@ -166,7 +171,7 @@ fn list(library: &Library, json: bool) -> Result<()> {
         })
         .collect::<Result<Vec<_>>>()?;
     if json {
-        return say(serde_json::to_string_pretty(&listed)?);
+        return say_json(&listed);
     }
     let widest = listed.iter().map(|row| row.name.len()).max().unwrap_or(0);
     for row in &listed {
@@ -236,7 +241,7 @@ fn generate(recipe: &Recipe) -> Result<()> {
     };
     let text = to_toml(&scene)?;
     let Some(file) = &out.out else {
-        return say(text.trim_end());
+        return say_lines(text.trim_end());
     };
     write(file, out.force, &text)
 }
@@ -248,7 +253,12 @@ fn write(file: &Path, force: bool, text: &str) -> Result<()> {
         return Err(Error::Argument {
             argument: "out",
             found: file.display().to_string(),
-            remedy: "that is a folder; name a file in it".into(),
+            remedy: match file.file_name() {
+                Some(name) if !file.is_dir() && name.to_str().is_none() => {
+                    "the name is not UTF-8; give the file a name in UTF-8".into()
+                }
+                Some(_) | None => "that is a folder; name a file in it".into(),
+            },
         });
     }
     write_file(file, force, text.as_bytes())

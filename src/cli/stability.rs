@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::{ReplaceArgs, chosen};
-use super::output::{progress, say};
+use super::output::{progress, say, say_json, say_lines};
 use super::studies::Order;
 use crate::case::Library;
 use crate::engine::{EngineSpec, engines};
@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::report::{
     Folder, Output, STABILITY_FILES, stability_findings, stability_table, write_stability,
 };
+use crate::study::BUDGET_MAX;
 use crate::study::stability::{
     Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
 };
@@ -115,11 +116,11 @@ fn make(
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    if args.budget == 0 {
+    if !(1..=BUDGET_MAX).contains(&args.budget) {
         return Err(Error::Argument {
             argument: "budget",
-            found: "0".into(),
-            remedy: "give a number above 0".into(),
+            found: args.budget.to_string(),
+            remedy: format!("give 1 to {BUDGET_MAX}"),
         });
     }
     let specs = specs(&args.names)?;
@@ -143,9 +144,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
-    say(stability_table(&summary))?;
+    say_lines(stability_table(&summary))?;
     for finding in stability_findings(&study, &summary) {
         say(finding)?;
     }

@@ -1,5 +1,6 @@
 //! What an engine produced: states on the scene's time grid, events, work, and how it ended.
 
+mod bounds;
 mod concession;
 mod digest;
 mod digits;
@@ -13,6 +14,8 @@ mod start;
 mod table;
 mod trajectory_csv;
 
+pub(crate) use bounds::EVENTS_BYTES_MAX;
+pub use bounds::{trajectory_bytes, trajectory_bytes_max};
 pub use concession::{Concession, ConcessionKind};
 pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};

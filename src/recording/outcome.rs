@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::error::number;
 use crate::physics::BodyState;
 use crate::scene::Scene;
 
@@ -108,18 +109,24 @@ impl Outcome {
         match self {
             Self::Finished => "finished".to_owned(),
             Self::NonFinite { time, body } => format!(
-                "not finite by t = {time} s (`{}`); the recording ends at the last finite sample",
+                "not finite by t = {} s (`{}`); the recording ends at the last finite sample",
+                number(*time),
                 scene.bodies[*body].name
             ),
             Self::Disabled { time, body } => format!(
-                "`{}` was disabled by the engine at t = {time} s; the recording ends before it",
-                scene.bodies[*body].name
+                "`{}` was disabled by the engine at t = {} s; the recording ends before it",
+                scene.bodies[*body].name,
+                number(*time)
             ),
             Self::BudgetSpent { time } => {
-                format!("the work allowed was spent at t = {time} s; the recording ends there")
+                format!(
+                    "the work allowed was spent at t = {} s; the recording ends there",
+                    number(*time)
+                )
             }
             Self::Collapsed { time, a, b, reason } => format!(
-                "{reason} at t = {time} s (`{}` and {}); the recording ends before it",
+                "{reason} at t = {} s (`{}` and {}); the recording ends before it",
+                number(*time),
                 scene.bodies[*a].name,
                 b.map_or("a wall".to_owned(), |b| format!(
                     "`{}`",

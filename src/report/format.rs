@@ -1,5 +1,7 @@
 //! Numbers for people.
 
+use crate::error::harmless;
+
 /// Three significant digits, plain between 0.001 and a million, powers of ten outside.
 ///
 /// ```
@@ -66,11 +68,15 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        cells
+            .map(|cell| harmless(cell).chars().count())
+            .max()
+            .unwrap_or(0)
     };
     let widths: Vec<_> = (0..columns).map(width).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths);
+        let cells = cells.map(|(cell, width)| (harmless(cell), width));
         let padded: Vec<_> = cells
             .map(|(cell, width)| format!("{cell:width$}"))
             .collect();

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
 use super::studies::StudyNote;
-use super::template::fill;
+use super::template::{fill, plain_text};
 use super::{Folder, Studies, engineering, percent};
 use crate::case::{Evidence, TRUTH};
 use crate::compare::{RIGHT_WITHIN, Remainder};
@@ -202,7 +202,7 @@ fn caption(summary: &Summary, pair: &PairSummary) -> String {
         });
     format!(
         "{}: {} and {} part by {} ({} of the scene's size).{told}",
-        summary.title,
+        plain_text(&summary.title),
         pair.engine_a,
         pair.engine_b,
         with_unit(pair.position_divergence_max, unit),
@@ -275,7 +275,7 @@ fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
          [{}]({}/README.md), by {} ({} of its size).",
         pairs.len(),
         whole_percent(RIGHT_WITHIN),
-        summary.title,
+        plain_text(&summary.title),
         summary.scene,
         with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
         percent(pair.position_divergence_relative),

@@ -2,7 +2,6 @@
 //! that a later report still tells of them, with their date.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -12,6 +11,7 @@ use super::Folder;
 use super::cost::{CostSection, cost_pictures, headline};
 use super::stability;
 use crate::error::{Error, Result};
+use crate::input::{self, STORED_BYTES_MAX};
 use crate::scene::Scene;
 use crate::study::Made;
 use crate::study::cost::{CostSummary, EngineLimit};
@@ -163,7 +163,7 @@ fn stored<T: DeserializeOwned>(report: &Folder, study: &'static str) -> Result<O
         (false, true) => Err(damaged(page, "is missing".to_owned())),
         (true, false) => Err(damaged(figures, "is missing".to_owned())),
         (true, true) => {
-            let bytes = fs::read(&figures).map_err(|source| Error::read(&figures, source))?;
+            let bytes = input::bytes(&figures, STORED_BYTES_MAX)?;
             let read = serde_json::from_slice(&bytes);
             read.map_err(|wrong| damaged(figures, format!("not what a study leaves: {wrong}")))
         }

@@ -3,6 +3,8 @@
 
 mod bad_input;
 mod bits;
+#[cfg(unix)]
+mod bounded;
 mod cases;
 mod check;
 mod closed_forms;
@@ -28,6 +30,7 @@ mod invariants;
 mod layers;
 mod ledger;
 mod limits;
+mod mutants;
 mod oracle;
 mod orders;
 mod outputs;

@@ -1,10 +1,9 @@
 //! What a blessing changes, shown before it is written.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::case::{baseline_file, thinning, with_profile};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless};
 use crate::recording::write_trajectory;
 use crate::report::{Output, Replace};
 use crate::scene::Scene;
@@ -17,12 +16,9 @@ pub fn blessing_text(blessings: &[Blessing]) -> String {
     for blessing in blessings {
         for change in &blessing.changes {
             let mark = if change.widens { "  WIDER" } else { "" };
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{} {}: {}{mark}",
-                blessing.like, blessing.case, change.what
-            );
+            let line = format!("{} {}: {}{mark}", blessing.like, blessing.case, change.what);
+            text.push_str(&harmless(&line));
+            text.push('\n');
         }
     }
     text

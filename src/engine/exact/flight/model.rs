@@ -4,8 +4,9 @@ use super::law::{Fixed, Law, State};
 use crate::error::{Error, Result};
 use crate::physics::real::{Real, vector};
 use crate::recording::Wall;
+use crate::scene::LOOKS_MAX;
 use crate::scene::Scene;
-use crate::scene::overlap::overlaps;
+use crate::scene::overlap::survey;
 
 /// Events nearer than this many units of rounding of the duration are simultaneous.
 const TIE_ROUNDINGS: f64 = 64.0;
@@ -210,8 +211,18 @@ fn overlapping(scene: &Scene) -> Option<String> {
         .iter()
         .map(|body| (body.position.into(), body.radius))
         .collect();
-    let found = overlaps(&spheres);
-    let deepest = found.iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+    // The first of many overlaps are enough to refuse the scene.
+    let some = survey(&spheres, LOOKS_MAX);
+    let found = if some.all
+        || some
+            .deepest
+            .is_some_and(|deepest| deepest.depth > rounding(scene))
+    {
+        some
+    } else {
+        survey(&spheres, u64::MAX)
+    };
+    let deepest = found.deepest?;
     (deepest.depth > rounding(scene)).then(|| {
         format!(
             "`{}` and `{}` overlap at the start by {:.3e}",
