@@ -299,6 +299,49 @@ mod tests {
         assert!(pressed > 500 && opened > 500, "{pressed} {opened}");
     }
 
+    /// The meter counts what the search costs: every entry that is read enters one product, the
+    /// factor takes about as many products again. It ends the search soon after it is spent.
+    #[test]
+    fn what_the_search_costs_is_counted_and_bounds_it() {
+        let mut seed = 7_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1_u32 << 24) - 0.5
+        };
+        for count in [4_usize, 16, 48] {
+            let arms: Vec<Vec<f64>> = (0..count)
+                .map(|_| (0..count / 2).map(|_| random()).collect())
+                .collect();
+            let rates: Vec<f64> = (0..count).map(|_| random() - 0.2).collect();
+            let search = |meter: &mut Meter| {
+                let reads = std::cell::Cell::new(0_u64);
+                let matrix = |i: usize, j: usize| {
+                    reads.set(reads.get() + 1);
+                    arms[i]
+                        .iter()
+                        .zip(&arms[j])
+                        .map(|(a, b)| a * b)
+                        .sum::<f64>()
+                };
+                pushes(&matrix, &rates, &vec![true; count], meter);
+                reads.get()
+            };
+            let mut meter = Meter::default();
+            let reads = search(&mut meter);
+            let done = meter.done();
+            // Overheads of some fifty operations a row are most of a small one.
+            assert!(
+                reads <= done && done <= 60 * reads,
+                "{count}: {reads} {done}"
+            );
+            let mut bounded = Meter::limited(done / 3);
+            assert!(search(&mut bounded) < reads, "{count}");
+            // One row, one solution or one look at all rates past the bound, at the most.
+            let square = (count * count) as u64;
+            assert!(bounded.done() <= done / 3 + 4 * square + 500, "{count}");
+        }
+    }
+
     /// Once nothing closes the search ends, whatever rests, opens or depends on the others: it
     /// looks at each entry a few times, not in all the rounds that there may be.
     #[test]

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bits;
+mod budget;
 mod cases;
 mod check;
 mod closed_forms;

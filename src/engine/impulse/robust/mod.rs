@@ -344,6 +344,7 @@ impl Robust {
                 touch.restitution = 0.0;
             }
         }
+        let before = self.work.meter.done();
         let mut instant = Instant {
             particles,
             touches: &self.touches,
@@ -352,6 +353,7 @@ impl Robust {
             meter: &mut self.work.meter,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
+        self.work.charge_solution(before);
         self.work.charge_rounds(settled.rounds);
         self.conceded.cut_short += u64::from(settled.cut_short);
     }

@@ -172,7 +172,9 @@ impl Robust {
                 .collect();
             let guess: Vec<bool> = sizes.iter().map(|l| round == 0 || *l > 0.0).collect();
             let entry = |i: usize, j: usize| matrix[i * ends.len() + j];
+            let before = self.work.meter.done();
             sizes = pushes(&entry, &free, &guess, &mut self.work.meter);
+            self.work.charge_solution(before);
             self.release();
             for (touch, size) in ends.iter().zip(&sizes) {
                 if touch.b.is_none() {

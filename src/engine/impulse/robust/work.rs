@@ -28,6 +28,10 @@ const LOOKS: u64 = 64;
 /// digits of pi: 314159 impacts of two bodies and a wall.
 const IMPACTS: u64 = 2_000;
 const IMPACTS_SHARED: u64 = 400_000;
+/// Operations of a solution of touches that count as another impact: so many, and more for each
+/// cube of the bodies. A jam of some dozen balls in no room takes a hundred times as many.
+const SOLVED: u64 = 100_000;
+const SOLVED_SHARED: u64 = 2;
 /// Motions that an impact takes, about, where forces depend on places: its time is found in rounds
 /// of rounds.
 const MOTIONS_AN_IMPACT: u64 = 50;
@@ -191,6 +195,13 @@ impl Work {
         self.impacts += rounds.max(1);
     }
 
+    /// Touches were solved together since so many operations were done.
+    pub(super) fn charge_solution(&mut self, before: u64) {
+        let cube = self.bodies.saturating_pow(3);
+        let dear = SOLVED.saturating_add(SOLVED_SHARED.saturating_mul(cube));
+        self.impacts += (self.meter.done() - before) / dear;
+    }
+
     /// A search looked along the ways so often.
     pub(super) fn charge_looks(&mut self, looks: u64) {
         self.impacts += looks / (LOOKS * self.bodies);
@@ -329,6 +340,19 @@ mod tests {
             work.charge_long_step();
         }
         assert_eq!(work.shortest(1.0), 2e-9);
+    }
+
+    /// A solution counts as one impact more for every 100,000 operations and twice the cube of the
+    /// bodies: a cheap one as none, a dear one as many.
+    #[test]
+    fn dear_solutions_count_as_impacts() {
+        let mut work = Work::of(10, 1.0, 0, false);
+        for (operations, impacts) in [(101_999, 0), (102_000, 1), (10_200_000, 101)] {
+            let before = work.meter.done();
+            work.meter.add(operations);
+            work.charge_solution(before);
+            assert_eq!(work.impacts, impacts, "{operations}");
+        }
     }
 
     /// Each round counts, one without any too; as many again end all meetings.
