@@ -353,8 +353,7 @@ impl Robust {
             meter: &mut self.work.meter,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
-        self.work.charge_solution(before);
-        self.work.charge_rounds(settled.rounds);
+        self.work.charge_rounds(settled.rounds, before);
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 

@@ -156,13 +156,8 @@ impl Robust {
                 }
                 break;
             }
+            self.count_matrix(count);
             let (flow, start) = (&self.flow, &self.start);
-            let an_entry = if flow.is_coupled() {
-                OPERATIONS_A_COUPLED_ENTRY * start.len() as u64
-            } else {
-                OPERATIONS_AN_ENTRY
-            };
-            self.work.meter.add(an_entry * count * count);
             let matrix = square(&ends, |one, other| pressing(one, other, flow, start));
             let rows = matrix.chunks_exact(ends.len());
             let free: Vec<f64> = changes
@@ -226,6 +221,17 @@ impl Robust {
         turn_back(phases, particles, length);
     }
 
+    /// Counts a matrix of so many touches.
+    fn count_matrix(&mut self, count: u64) {
+        let an_entry = if self.flow.is_coupled() {
+            OPERATIONS_A_COUPLED_ENTRY * self.start.len() as u64
+        } else {
+            OPERATIONS_AN_ENTRY
+        };
+        self.work.meter.add(an_entry * count * count);
+    }
+
+    /// Counts a motion of all bodies.
     fn charge_motion(&mut self) {
         self.work.charge_motion();
         self.work.count_bodies(OPERATIONS_A_ROUND);

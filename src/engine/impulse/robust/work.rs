@@ -190,16 +190,21 @@ impl Work {
         }
     }
 
-    /// What was met took so many rounds of reflections.
-    pub(super) fn charge_rounds(&mut self, rounds: u64) {
-        self.impacts += rounds.max(1);
+    /// What was met took so many rounds of reflections, since so many operations were done.
+    pub(super) fn charge_rounds(&mut self, rounds: u64, before: u64) {
+        self.impacts += rounds.max(1).max(self.solutions(before));
     }
 
     /// Touches were solved together since so many operations were done.
     pub(super) fn charge_solution(&mut self, before: u64) {
+        self.impacts += self.solutions(before);
+    }
+
+    /// Impacts that the operations since then count as.
+    fn solutions(&self, before: u64) -> u64 {
         let cube = self.bodies.saturating_pow(3);
         let dear = SOLVED.saturating_add(SOLVED_SHARED.saturating_mul(cube));
-        self.impacts += (self.meter.done() - before) / dear;
+        (self.meter.done() - before) / dear
     }
 
     /// A search looked along the ways so often.
@@ -359,12 +364,12 @@ mod tests {
     #[test]
     fn rounds_of_impacts_count() {
         let mut work = Work::of(4, 1.0, 0, true);
-        work.charge_rounds(0);
-        work.charge_rounds(work.most - 1);
+        work.charge_rounds(0, 0);
+        work.charge_rounds(work.most - 1, 0);
         assert!(!work.bounces_no_more());
-        work.charge_rounds(1);
+        work.charge_rounds(1, 0);
         assert!(work.bounces_no_more() && !work.meets_no_more());
-        work.charge_rounds(work.most);
+        work.charge_rounds(work.most, 0);
         assert!(work.meets_no_more());
         for _ in 0..2 * work.most {
             work.begin_step();
