@@ -323,7 +323,8 @@ mod tests {
                         .map(|(a, b)| a * b)
                         .sum::<f64>()
                 };
-                pushes(&matrix, &rates, &vec![true; count], meter);
+                let forces = pushes(&matrix, &rates, &vec![true; count], meter);
+                assert!(forces.iter().all(|force| *force >= 0.0));
                 reads.get()
             };
             let mut meter = Meter::default();
