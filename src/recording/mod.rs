@@ -40,15 +40,19 @@ pub struct Work {
     pub pair_tests: u64,
     /// Pair and body forces evaluated, where the engine counts them.
     pub force_evaluations: u64,
+    /// All else that takes time, such as impacts that are solved together, in units of about a
+    /// look at a pair; where the engine counts it.
+    pub solving: u64,
 }
 
 impl Work {
-    /// All of it as one number: steps, looks and evaluations.
+    /// All of it as one number: steps, looks, evaluations and what stands for them.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.steps
             .saturating_add(self.pair_tests)
             .saturating_add(self.force_evaluations)
+            .saturating_add(self.solving)
     }
 }
 
@@ -61,6 +65,7 @@ impl std::ops::Sub for Work {
             steps: self.steps - earlier.steps,
             pair_tests: self.pair_tests - earlier.pair_tests,
             force_evaluations: self.force_evaluations - earlier.force_evaluations,
+            solving: self.solving - earlier.solving,
         }
     }
 }

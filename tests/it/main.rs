@@ -5,6 +5,7 @@ mod bad_input;
 mod bits;
 #[cfg(unix)]
 mod bounded;
+mod budget;
 mod cases;
 mod check;
 mod closed_forms;

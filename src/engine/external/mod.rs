@@ -4,9 +4,10 @@
 //! The program is a guest that is not trusted: it has a time, a number of bytes, a temporary
 //! folder and a process group of its own, and whatever it does, all of them end with it.
 //! `command` splits the command and fills in its placeholders, `tables` writes what the program
-//! reads, `running` is the guard that ends it, `run` watches it.
+//! reads, `folder` is where it works, `running` is the guard that ends it, `run` watches it.
 
 mod command;
+mod folder;
 mod last_words;
 mod process;
 mod run;

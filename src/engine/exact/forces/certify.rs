@@ -226,6 +226,7 @@ impl Voice {
             steps: before.steps + now.steps,
             pair_tests: before.pair_tests + now.pair_tests,
             force_evaluations: before.force_evaluations + now.force_evaluations,
+            solving: before.solving + now.solving,
         }
     }
 }

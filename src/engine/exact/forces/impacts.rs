@@ -7,6 +7,7 @@ use super::search::{Cause, Fresh};
 use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
 use crate::engine::exact::order::TieOrder;
+use crate::physics::Meter;
 use crate::physics::cholesky::Cholesky;
 use crate::physics::complementarity::{Role, pressing};
 
@@ -266,6 +267,7 @@ impl<T: Real> Instant<'_, T> {
             .map(|index| rates[index])
             .collect();
         let pressing = self.complementary(&close, &rates);
+        aftermath.operations += pressing.operations;
         for (meeting, push) in pressing.pressed.iter().zip(pressing.pushes) {
             let own = contact_matrix(&self.law.inverse_mass, &meeting.arms, &meeting.arms);
             meeting.arms.push(push, &self.law.inverse_mass, velocity);
@@ -316,7 +318,9 @@ impl<T: Real> Instant<'_, T> {
                 pressed,
                 pushes,
                 redundant,
+                operations,
             } = self.complementary(&close, &rates);
+            aftermath.operations += operations;
             let force = |touch: Touch| {
                 let mut pairs = pressed.iter().zip(&pushes);
                 pairs
@@ -369,7 +373,9 @@ impl<T: Real> Instant<'_, T> {
             .collect();
         let doubles: Vec<f64> = rates.iter().map(|rate| rate.to_f64()).collect();
         let warm: Vec<bool> = close.iter().map(|m| self.held.contains(&m.touch)).collect();
-        let roles = pressing(&|i, j| matrix[i * count + j], &doubles, &warm);
+        let mut meter = Meter::default();
+        let roles = pressing(&|i, j| matrix[i * count + j], &doubles, &warm, &mut meter);
+        let solving = usize::try_from(meter.done()).unwrap_or(usize::MAX);
         let answer: Vec<usize> = (0..count)
             .filter(|index| roles[*index] == Role::Pressed)
             .collect();
@@ -383,6 +389,7 @@ impl<T: Real> Instant<'_, T> {
             redundant: redundant.map(|index| close[index].touch).collect(),
             pressed: pressed.iter().map(|index| close[*index]).collect(),
             pushes,
+            operations: OPERATIONS_AN_ENTRY * as_real(count).powi(2) + as_real(solving) / T::COST,
         }
     }
 }
@@ -393,6 +400,8 @@ struct Pressing<'m, T> {
     /// Shape: as `pressed`.
     pushes: Vec<T>,
     redundant: Vec<Touch>,
+    /// What it took, in the arithmetic of the velocities.
+    operations: f64,
 }
 
 impl<T> Default for Pressing<'_, T> {
@@ -401,6 +410,7 @@ impl<T> Default for Pressing<'_, T> {
             pressed: Vec::new(),
             pushes: Vec::new(),
             redundant: Vec::new(),
+            operations: 0.0,
         }
     }
 }
