@@ -63,6 +63,12 @@ pub fn quoted(text: &str) -> String {
     }
 }
 
+/// A name as code in a message or a page; names are free text, and end no code.
+#[must_use]
+pub fn code(name: &str) -> String {
+    format!("`{}`", name.replace('`', "'"))
+}
+
 /// A whole message: [`harmless`], and without its middle where it is long.
 #[must_use]
 pub fn one_line(text: &str) -> String {

@@ -8,7 +8,7 @@ use super::fault::{
 };
 use super::overlap::overlaps;
 use super::{Effects, Scene, Spring};
-use crate::error::{Error, Result, is_invisible, number, quoted};
+use crate::error::{Error, Result, code, is_invisible, number, quoted};
 
 /// Samples times bodies that a recording may hold: 2 GB of states.
 const STATES_MAX: f64 = 4e7;
@@ -47,13 +47,16 @@ impl fmt::Display for SceneWarning {
                 pairs,
             } => write!(
                 f,
-                "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
-                 engines push them apart, each in its own way; move them apart for a comparison of motion"
+                "{pairs} pair(s) overlap at the start, deepest {} and {} by {depth:.3e} (scene units): \
+                 engines push them apart, each in its own way; move them apart for a comparison of motion",
+                code(body_a),
+                code(body_b)
             ),
             Self::OutsideAtStart { body } => write!(
                 f,
-                "`{body}` starts beyond a cushion: engines put it back, each in its own way; \
-                 start it inside for a comparison of motion"
+                "{} starts beyond a cushion: engines put it back, each in its own way; \
+                 start it inside for a comparison of motion",
+                code(body)
             ),
         }
     }

@@ -264,7 +264,7 @@ fn shown(command: &[String], found: &mut BTreeSet<(String, String)>) {
             if word != "help" {
                 shown(&[command, &[word.to_owned()]].concat(), found);
             }
-        } else if text.starts_with('-') {
+        } else if text.starts_with('-') && !text.starts_with("- ") {
             let long = text.split("--").nth(1).unwrap_or_else(|| panic!("{line}"));
             let long: String = long
                 .chars()

@@ -337,8 +337,8 @@ fn files_of_data_are_told_in_the_words_of_toml() {
         (body(BODY, "bodies = 1\n"), "integer `1`, expected an array"),
         (body(BODY, "[bodies]\n"), "table, expected an array"),
         (
-            body("[effects.contact]\nrestitution = 1.0", "effects = 1"),
-            "expected a",
+            format!("effects = 1\nname = \"x\"\nduration = 1.0\nsample_every = 0.5\n{BODY}"),
+            "integer `1`, expected a table",
         ),
         (
             format!("units = true\n{}", scene("x")),

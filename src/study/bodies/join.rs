@@ -15,6 +15,8 @@ use crate::error::{Error, Result};
 fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
     let input = File::open(file).map_err(|source| Error::read(file, source))?;
     let mut table = csv::Reader::from_reader(input);
+    // A file that cannot be read has no header either, which reading rows would not tell.
+    table.headers().map_err(|wrong| complaint(file, &wrong))?;
     let rows = table.deserialize();
     let points: Vec<BodiesPoint> = rows
         .collect::<std::result::Result<_, csv::Error>>()
