@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 pub(crate) use shown::is_invisible;
-pub use shown::{LINE_MAX, QUOTED_MAX, harmless, number, one_line, quoted};
+pub use shown::{LINE_MAX, QUOTED_MAX, code, harmless, number, one_line, quoted};
 
 /// Shorthand for results of carom.
 pub type Result<T> = std::result::Result<T, Error>;

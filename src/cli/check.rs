@@ -124,7 +124,7 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     let bar = progress(cases.len() * candidates.len(), args.quiet);
     let report = check(&cases, &library, &candidates, &|case| {
         bar.inc(1);
-        bar.set_message(case.to_owned());
+        bar.set_message(case);
     })?;
     bar.finish_and_clear();
     match args.format {

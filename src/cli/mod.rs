@@ -79,13 +79,16 @@ pub fn main() -> std::process::ExitCode {
 fn parsed() -> Result<Cli> {
     let mut command = Cli::command();
     command.build();
-    let matches = command.clone().try_get_matches().map_err(refused)?;
+    let matches = command
+        .clone()
+        .try_get_matches()
+        .map_err(|wrong| refused(&wrong))?;
     refusals::refuse_idle(&matches, &command)?;
-    Cli::from_arg_matches(&matches).map_err(refused)
+    Cli::from_arg_matches(&matches).map_err(|wrong| refused(&wrong))
 }
 
 /// What clap says of a command line that it does not take, in one line.
-fn refused(wrong: clap::Error) -> Error {
+fn refused(wrong: &clap::Error) -> Error {
     use clap::error::ErrorKind::{
         DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
     };

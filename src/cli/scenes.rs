@@ -248,17 +248,11 @@ fn generate(recipe: &Recipe) -> Result<()> {
 
 /// Writes a scene file, but never over another one without being told to.
 fn write(file: &Path, force: bool, text: &str) -> Result<()> {
-    let name = file.file_name().filter(|_| !file.is_dir());
-    if name.is_none() {
+    if file.is_dir() || file.file_name().is_none() {
         return Err(Error::Argument {
             argument: "out",
             found: file.display().to_string(),
-            remedy: match file.file_name() {
-                Some(name) if !file.is_dir() && name.to_str().is_none() => {
-                    "the name is not UTF-8; give the file a name in UTF-8".into()
-                }
-                Some(_) | None => "that is a folder; name a file in it".into(),
-            },
+            remedy: "that is a folder; name a file in it".into(),
         });
     }
     write_file(file, force, text.as_bytes())

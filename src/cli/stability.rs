@@ -100,7 +100,7 @@ fn make(
     let study = stability(cases, specs, budget, &|case, done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-        bar.set_message(case.to_owned());
+        bar.set_message(case);
     })?;
     bar.set_message("maps");
     let mapped = specs

@@ -63,6 +63,12 @@ pub fn quoted(text: &str) -> String {
     }
 }
 
+/// A name as code in a message or a page; names are free text, and end no code.
+#[must_use]
+pub fn code(name: &str) -> String {
+    format!("`{}`", name.replace('`', "'"))
+}
+
 /// A whole message: [`harmless`], and without its middle where it is long.
 #[must_use]
 pub fn one_line(text: &str) -> String {
@@ -104,7 +110,7 @@ mod tests {
     fn nothing_that_a_terminal_obeys_or_hides_is_left() {
         for c in (0..=0x0010_ffff).filter_map(char::from_u32) {
             let shown = harmless(&format!("a{c}b"));
-            assert!(!shown.chars().any(is_invisible), "{:?}: {shown:?}", c);
+            assert!(!shown.chars().any(is_invisible), "{c:?}: {shown:?}");
         }
         let kept = "당구 공 \"a\" 'b' \\ `c` é e\u{301} 🎱 µ\u{3000}|";
         assert_eq!(harmless(kept), kept);

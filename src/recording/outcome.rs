@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::error::number;
+use crate::error::{code, number};
 use crate::physics::BodyState;
 use crate::scene::Scene;
 
@@ -109,13 +109,13 @@ impl Outcome {
         match self {
             Self::Finished => "finished".to_owned(),
             Self::NonFinite { time, body } => format!(
-                "not finite by t = {} s (`{}`); the recording ends at the last finite sample",
+                "not finite by t = {} s ({}); the recording ends at the last finite sample",
                 number(*time),
-                scene.bodies[*body].name
+                code(&scene.bodies[*body].name)
             ),
             Self::Disabled { time, body } => format!(
-                "`{}` was disabled by the engine at t = {} s; the recording ends before it",
-                scene.bodies[*body].name,
+                "{} was disabled by the engine at t = {} s; the recording ends before it",
+                code(&scene.bodies[*body].name),
                 number(*time)
             ),
             Self::BudgetSpent { time } => {
@@ -125,13 +125,10 @@ impl Outcome {
                 )
             }
             Self::Collapsed { time, a, b, reason } => format!(
-                "{reason} at t = {} s (`{}` and {}); the recording ends before it",
+                "{reason} at t = {} s ({} and {}); the recording ends before it",
                 number(*time),
-                scene.bodies[*a].name,
-                b.map_or("a wall".to_owned(), |b| format!(
-                    "`{}`",
-                    scene.bodies[b].name
-                ))
+                code(&scene.bodies[*a].name),
+                b.map_or("a wall".to_owned(), |b| code(&scene.bodies[b].name))
             ),
         }
     }

@@ -1,5 +1,6 @@
 //! Numbers for people.
 
+pub(super) use crate::error::code;
 use crate::error::harmless;
 
 /// Three significant digits, plain between 0.001 and a million, powers of ten outside.
@@ -56,11 +57,6 @@ pub fn percent(share: f64) -> String {
 /// A share that was chosen round, as a percentage without needless zeros.
 pub(super) fn whole_percent(share: f64) -> String {
     format!("{} %", 100.0 * share)
-}
-
-/// A name as code in Markdown; names are free text.
-pub(super) fn code(name: &str) -> String {
-    format!("`{}`", name.replace('`', "'"))
 }
 
 /// Rows of cells for a terminal, each column as wide as its widest cell.

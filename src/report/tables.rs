@@ -81,11 +81,11 @@ struct DivergenceRow<'a> {
     max_position: Number,
     worst_body: &'a str,
     rms_velocity: Number,
-    /// |E_a - E_b|, scene units.
+    /// Of the total energies, without sign, scene units.
     energy_difference: Number,
-    /// |p_a - p_b|, scene units.
+    /// Of the momenta, the length of the vector, scene units.
     momentum_difference: Number,
-    /// |L_a - L_b| about the origin, scene units.
+    /// Of the angular momenta about the origin, the length of the vector, scene units.
     angular_momentum_difference: Number,
 }
 

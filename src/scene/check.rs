@@ -9,7 +9,7 @@ use super::fault::{
 };
 use super::overlap::survey;
 use super::{Effects, Scene, Spring};
-use crate::error::{Error, Result, is_invisible, number, quoted};
+use crate::error::{Error, Result, code, is_invisible, number, quoted};
 
 /// Characters in a name, at most.
 const NAME_MAX: usize = 200;
@@ -48,14 +48,17 @@ impl fmt::Display for SceneWarning {
                 all,
             } => write!(
                 f,
-                "{}{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
+                "{}{pairs} pair(s) overlap at the start, deepest {} and {} by {depth:.3e} (scene units): \
                  engines push them apart, each in its own way; move them apart for a comparison of motion",
-                if *all { "" } else { "more than " }
+                if *all { "" } else { "more than " },
+                code(body_a),
+                code(body_b)
             ),
             Self::OutsideAtStart { body } => write!(
                 f,
-                "`{body}` starts beyond a cushion: engines put it back, each in its own way; \
-                 start it inside for a comparison of motion"
+                "{} starts beyond a cushion: engines put it back, each in its own way; \
+                 start it inside for a comparison of motion",
+                code(body)
             ),
         }
     }

@@ -101,7 +101,7 @@ fn due_in_words(due: &str) -> String {
         }
         ["a", "sequence"] => "an array".to_owned(),
         ["a", "map"] | ["struct", ..] => "a table".to_owned(),
-        ["enum", ..] | ["variant", ..] => "one of the known words".to_owned(),
+        ["enum" | "variant", ..] => "one of the known words".to_owned(),
         ["string", "or", "table"] => "a string".to_owned(),
         ["bool"] | ["a", "boolean"] => "true or false".to_owned(),
         _ => words.join(" "),

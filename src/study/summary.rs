@@ -316,11 +316,11 @@ impl DisagreementSummary {
 
 /// An impact in words: who, against whom, when.
 fn describe(scene: &Scene, event: &Event) -> String {
-    let name = |body: usize| &scene.bodies[body].name;
+    let name = |body: usize| crate::error::code(&scene.bodies[body].name);
     let what = match event.kind {
-        EventKind::Contact { a, b } => format!("`{}` hit `{}`", name(a), name(b)),
-        EventKind::Cushion { body, wall } => format!("`{}` hit cushion {wall}", name(body)),
-        EventKind::Rest { body } => format!("`{}` stop", name(body)),
+        EventKind::Contact { a, b } => format!("{} hit {}", name(a), name(b)),
+        EventKind::Cushion { body, wall } => format!("{} hit cushion {wall}", name(body)),
+        EventKind::Rest { body } => format!("{} stop", name(body)),
     };
     format!("{what} at {:.4} s", event.time)
 }

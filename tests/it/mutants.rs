@@ -195,7 +195,7 @@ fn mutate(text: &mut Vec<u8>, dice: &mut Dice) {
         1 => text.insert(place, dice.below(256) as u8),
         2 if place < text.len() => drop(text.remove(place)),
         3 => replace(text, (place, place), dice.of(&PIECES).as_bytes()),
-        4 | 5 | 6 => {
+        4..=6 => {
             let all = numbers(text);
             if !all.is_empty() {
                 replace(text, *dice.of(&all), dice.of(&NUMBERS).as_bytes());

@@ -1,7 +1,7 @@
 //! A scene as this engine needs it: bodies, law of flight, walls, rules; what it must refuse.
 
 use super::law::{Fixed, Law, State};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, code};
 use crate::physics::real::{Real, vector};
 use crate::recording::Wall;
 use crate::scene::LOOKS_MAX;
@@ -195,8 +195,9 @@ fn beyond_wall(scene: &Scene) -> Option<String> {
             let depth = plane.side * body.position[plane.axis] + body.radius - plane.half;
             if depth > room {
                 return Some(format!(
-                    "`{}` starts beyond the wall {} by {depth:.3e}",
-                    body.name, plane.wall
+                    "{} starts beyond the wall {} by {depth:.3e}",
+                    code(&body.name),
+                    plane.wall
                 ));
             }
         }
@@ -225,8 +226,10 @@ fn overlapping(scene: &Scene) -> Option<String> {
     let deepest = found.deepest?;
     (deepest.depth > rounding(scene)).then(|| {
         format!(
-            "`{}` and `{}` overlap at the start by {:.3e}",
-            scene.bodies[deepest.a].name, scene.bodies[deepest.b].name, deepest.depth
+            "{} and {} overlap at the start by {:.3e}",
+            code(&scene.bodies[deepest.a].name),
+            code(&scene.bodies[deepest.b].name),
+            deepest.depth
         )
     })
 }
