@@ -7,7 +7,7 @@ use super::output::{say, say_json, say_lines, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
 use crate::report::{EFFECTS_FILES, Output, effects_findings, effects_table, write_effects};
-use crate::study::{Change, REPETITIONS_MAX, Timing, effects};
+use crate::study::{Change, REPETITIONS_MAX, Timing, effects, fits};
 
 /// The engines unless others are asked for; the exact ones may take long, once for each effect.
 const DEFAULT: [&str; 4] = ["lecture", "rapier", "rapier-f64", "rapier-matched"];
@@ -58,6 +58,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(scene, &specs)?;
+    fits(scene, specs.len())?;
     let output = Output::open(&out, args.replace.replace())?;
     let folder = output.folder();
     folder.claim(EFFECTS_FILES)?;

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::report::{
     Folder, INDEX_FILES, Output, Place, Studies, claim_comparison, write_comparison, write_index,
 };
-use crate::study::{Summary, side_by_side};
+use crate::study::{Summary, fits, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -52,6 +52,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
             Ok(_) | Err(Error::EngineCannot { .. }) => {}
             Err(error) => return Err(error),
         }
+    }
+    for case in &cases {
+        fits(&case.scene, specs.len() + usize::from(case.truth.is_some()))?;
     }
     let output = Output::open(&args.out, args.replace.replace())?;
     let folder = output.folder();

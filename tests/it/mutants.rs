@@ -11,6 +11,8 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+use crate::hostile::in_short;
+
 /// Counted work that a mutant may take on an engine.
 const WORK: u64 = 20_000;
 
@@ -372,7 +374,7 @@ fn survive(text: Vec<u8>, engines: &[EngineSpec]) -> Tally {
 
 fn try_mutants(count: u64) -> Tally {
     let seeds = seeds();
-    let engines = ["lecture", "exact-fast"].map(|name| engine(name).unwrap());
+    let engines = ["lecture", "exact-fast"].map(|name| in_short(engine(name).unwrap()));
     let tally = (0..count)
         .into_par_iter()
         .map(|number| {
