@@ -35,5 +35,11 @@ pub fn trajectory_bytes(scene: &Scene) -> u64 {
 /// scene's states.
 #[must_use]
 pub fn trajectory_bytes_max(scene: &Scene) -> u64 {
-    SMALL.max(ROOM.saturating_mul(trajectory_bytes(scene)))
+    SMALL.max(trajectory_room(scene))
+}
+
+/// Bytes that a solver may write in any case, however small its limit is.
+#[must_use]
+pub fn trajectory_room(scene: &Scene) -> u64 {
+    ROOM.saturating_mul(trajectory_bytes(scene))
 }

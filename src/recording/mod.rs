@@ -15,7 +15,7 @@ mod table;
 mod trajectory_csv;
 
 pub(crate) use bounds::EVENTS_BYTES_MAX;
-pub use bounds::{trajectory_bytes, trajectory_bytes_max};
+pub use bounds::{trajectory_bytes, trajectory_bytes_max, trajectory_room};
 pub use concession::{Concession, ConcessionKind};
 pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};

@@ -52,7 +52,7 @@ fn listed() -> Vec<Listed> {
 }
 
 /// A folder with a scene file, a library of other scenes than those compiled in, one with
-/// tolerances that are too narrow, and a recording.
+/// tolerances that are too narrow, a recording, and a folder with a file of somebody else.
 fn scratch() -> tempfile::TempDir {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path();
@@ -74,6 +74,8 @@ fn scratch() -> tempfile::TempDir {
         fs::create_dir_all(&other).unwrap();
         fs::write(other.join("scene.toml"), text).unwrap();
     }
+    fs::create_dir(folder.join("taken")).unwrap();
+    fs::write(folder.join("taken/README.md"), "of somebody else").unwrap();
     let own = folder.join("own/headon-equal");
     fs::create_dir_all(&own).unwrap();
     for entry in fs::read_dir(sources.join("reference/headon-equal")).unwrap() {

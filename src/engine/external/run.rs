@@ -13,7 +13,7 @@ use super::running::Running;
 use super::{Limits, tables, trajectory};
 use crate::engine::StepGrid;
 use crate::error::{Error, Result};
-use crate::recording::{Recording, trajectory_bytes, trajectory_bytes_max};
+use crate::recording::{Recording, trajectory_bytes, trajectory_room};
 use crate::scene::{self, Scene};
 
 /// The first pause between two looks at the solver; each later one is twice as long.
@@ -175,7 +175,7 @@ fn watch(
     limits: Limits,
     scene: &Scene,
 ) -> std::result::Result<(), String> {
-    let allowed = limits.output_bytes.max(trajectory_bytes_max(scene));
+    let allowed = limits.output_bytes.max(trajectory_room(scene));
     let watched = [
         (STDOUT, &files.stdout),
         (STDERR, &files.stderr),
