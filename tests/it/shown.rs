@@ -162,7 +162,12 @@ fn words_of_files_are_shown_clean() {
         ] {
             library(folder, &[("events.csv", &events)]);
             let said = complaint(folder, &["run", "headon-equal", "--reference", "lib"]);
-            assert!(said.contains("events.csv, line "), "{said}");
+            // A row of two million letters is too long to be one.
+            let place = [
+                "events.csv, line ",
+                "events.csv: cannot be read: no row ends",
+            ];
+            assert!(place.iter().any(|place| said.contains(place)), "{said}");
         }
         for expected in [
             format!("topic = \"{ESCAPED}\"\n"),
