@@ -14,9 +14,9 @@ pub(crate) const TEXT_BYTES_MAX: u64 = 8 << 20;
 /// 1.2 kB for each (measured on `{a.a.a=1},`), which makes 350 MB.
 const SIGNS_MAX: usize = 300_000;
 
-/// Samples. Each costs, beside its states, up to 250 bytes a voice and 50 bytes a pair of voices
-/// in metrics and in distances, and as much again while they are written.
-pub(crate) const SAMPLES_MAX: f64 = 2e5;
+/// Samples: each costs 250 bytes in metrics, beside its states, on a single engine. A comparison
+/// of several allows fewer.
+pub(crate) const SAMPLES_MAX: f64 = 1e6;
 
 /// Samples times bodies. A recording holds 48 bytes of each: 150 MB.
 pub(crate) const STATES_MAX: f64 = 3e6;

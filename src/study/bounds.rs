@@ -5,6 +5,10 @@
 /// those of its voices and two more, by which `exact` certifies one.
 pub(super) const STATES_COMPARED_MAX: usize = 12_000_000;
 
+/// Samples of a comparison. Each costs, beside its states, up to 250 bytes a voice and 50 bytes a
+/// pair of voices in metrics and in distances, and as much again while they are written.
+pub(super) const SAMPLES_COMPARED_MAX: usize = 200_000;
+
 /// Rounds of timing. Each keeps 8 bytes a job: 80 kB a job.
 pub const REPETITIONS_MAX: usize = 10_000;
 

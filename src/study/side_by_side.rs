@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::bounds::STATES_COMPARED_MAX;
+use super::bounds::{SAMPLES_COMPARED_MAX, STATES_COMPARED_MAX};
 use crate::case::{Case, Evidence};
 use crate::compare::{
     ClusterFacts, Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, cluster_facts,
@@ -145,6 +145,16 @@ impl SideBySide {
 /// # Errors
 /// [`Error::Scene`] with how many samples would do.
 pub fn fits(scene: &Scene, voices: usize) -> Result<()> {
+    let samples = scene.sample_count();
+    if samples > SAMPLES_COMPARED_MAX {
+        return Err(Error::Scene {
+            scene: scene.name.clone(),
+            message: format!(
+                "{samples} samples, more than the {SAMPLES_COMPARED_MAX} that a comparison can \
+                 hold; sample less often or shorten `duration`"
+            ),
+        });
+    }
     let recordings = voices.saturating_add(CERTIFYING);
     let states = (scene.sample_count() + 1).saturating_mul(scene.bodies.len());
     let all = recordings.saturating_mul(states);
