@@ -73,6 +73,14 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Standard output cannot be written.
+    #[error(
+        "standard output cannot be written: {source}; what the command was to write into files is there"
+    )]
+    Stdout {
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A table (CSV) does not hold what it should.
     #[error("{file}, line {line}: {message}")]
     Table {
@@ -243,7 +251,7 @@ pub enum Error {
     },
     /// The system refused to put a complete result in place.
     #[error(
-        "{path}: cannot be put in place: {source}; the complete result is in {stage}, and the next run into the same folder puts it in place first"
+        "{path}: cannot be put in place: {source}; the result is in {stage}; allow it and run again into the same folder, or remove that folder to give the result up"
     )]
     Commit {
         /// The file that could not be renamed or removed.

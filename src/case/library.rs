@@ -70,7 +70,8 @@ impl Library {
                 let mut names = Vec::new();
                 for entry in std::fs::read_dir(folder).map_err(unreadable)? {
                     let entry = entry.map_err(unreadable)?;
-                    if entry.path().join("scene.toml").is_file() {
+                    let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+                    if !is_hidden && entry.path().join("scene.toml").is_file() {
                         names.push(entry.file_name().to_string_lossy().into_owned());
                     }
                 }

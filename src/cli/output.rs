@@ -59,10 +59,9 @@ fn json_text(value: &impl Serialize) -> Result<String> {
 fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(wrong) if wrong.kind() != io::ErrorKind::BrokenPipe => Err(Error::Write {
-            path: "standard output".into(),
-            source: wrong,
-        }),
+        Err(wrong) if wrong.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Error::Stdout { source: wrong })
+        }
         Ok(()) | Err(_) => Ok(()),
     }
 }

@@ -501,41 +501,175 @@ fn a_write_that_fails_leaves_the_earlier_result() {
     );
 }
 
-/// A stage that somebody else made cannot name files outside the folder.
-#[test]
-fn a_journal_of_another_place_is_not_obeyed() {
-    let scratch = tempfile::tempdir().unwrap();
-    let folder = scratch.path();
-    fs::write(folder.join("precious"), "precious").unwrap();
-    let stage = folder.join("d/.carom-stage-evil");
+/// Makes a stage with a journal as a killed run leaves it; the files in it hold `new`.
+fn stage(root: &Path, name: &str, journal: &str, staged: &[&str]) -> std::path::PathBuf {
+    let stage = root.join(name);
     fs::create_dir_all(stage.join("files")).unwrap();
-    let journal = r#"{"remove": ["../precious"], "prune": [], "place": []}"#;
+    let mark = "A result of carom in the making. The next run into the folder around it removes this one.\n";
+    fs::write(stage.join("about.txt"), mark).unwrap();
+    for path in staged {
+        let path = stage.join("files").join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "new").unwrap();
+    }
     fs::write(stage.join("journal.json"), journal).unwrap();
-    done(
-        folder,
-        &into(&["run", "headon-equal", "--engine", "lecture"], "d"),
-    );
-    assert_eq!(fs::read(folder.join("precious")).unwrap(), b"precious");
+    stage
 }
+
+/// `printf old | sha256sum`
+const OLD: &str = "cba06b5736faf67e54b07b561eae94395e774c517a7d910a54369e1263ccfbd4";
+
+const RUN: [&str; 4] = ["run", "headon-equal", "--engine", "lecture"];
 
 /// A commit that was killed halfway is completed by the next run, before its own.
 #[test]
 fn a_commit_that_was_begun_is_completed() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path();
-    let stage = folder.join("d/.carom-stage-x");
-    fs::create_dir_all(stage.join("files/sub")).unwrap();
-    fs::write(folder.join("d/gone.csv"), "old").unwrap();
-    fs::write(stage.join("files/sub/a.csv"), "new").unwrap();
-    let journal = r#"{"remove": ["gone.csv"], "prune": [], "place": ["b.csv", "sub/a.csv"]}"#;
-    fs::write(stage.join("journal.json"), journal).unwrap();
-    // The first of the two was placed before the kill.
-    fs::write(folder.join("d/b.csv"), "new").unwrap();
-    done(
-        folder,
-        &into(&["run", "headon-equal", "--engine", "lecture"], "d"),
+    let root = folder.join("d");
+    let journal = format!(
+        r#"{{"remove": [{{"path": "gone.csv", "before": "{OLD}"}}], "prune": [],
+            "place": [{{"path": "b.csv", "before": null}}, {{"path": "c.csv", "before": "{OLD}"}},
+                      {{"path": "sub/a.csv", "before": null}}]}}"#
     );
-    assert!(!folder.join("d/gone.csv").exists());
-    assert_eq!(fs::read(folder.join("d/sub/a.csv")).unwrap(), b"new");
+    // Of `b.csv` and `c.csv` the first was placed before the kill.
+    let stage = stage(&root, ".carom-stage-x", &journal, &["c.csv", "sub/a.csv"]);
+    for (name, text) in [("gone.csv", "old"), ("b.csv", "new"), ("c.csv", "old")] {
+        fs::write(root.join(name), text).unwrap();
+    }
+    done(folder, &into(&RUN, "d"));
+    assert!(!root.join("gone.csv").exists());
+    for name in ["b.csv", "c.csv", "sub/a.csv"] {
+        assert_eq!(fs::read(root.join(name)).unwrap(), b"new", "{name}");
+    }
     assert!(!stage.exists());
+}
+
+/// What was edited after the kill is somebody's, and a stage that somebody made names no file
+/// that carom did not write, none outside, and none through a link.
+#[test]
+fn a_journal_is_obeyed_only_for_files_that_are_as_they_were() {
+    let one = |act: &str, path: &str, before: &str| {
+        let before = if before.is_empty() {
+            "null".to_owned()
+        } else {
+            format!("\"{before}\"")
+        };
+        let mut lists = ["remove", "place"].map(|name| (name, String::new()));
+        for (name, list) in &mut lists {
+            if *name == act {
+                *list = format!("{{\"path\": \"{path}\", \"before\": {before}}}");
+            }
+        }
+        format!(
+            "{{\"remove\": [{}], \"prune\": [], \"place\": [{}]}}",
+            lists[0].1, lists[1].1
+        )
+    };
+    for (act, path, before) in [
+        ("remove", "mine.txt", ""),
+        ("remove", "mine.txt", OLD),
+        ("place", "mine.txt", ""),
+        ("place", "mine.txt", OLD),
+        ("remove", "../precious", ""),
+        ("remove", "link/precious", ""),
+        ("place", "link/mine.txt", ""),
+        ("place", "link/new.txt", ""),
+        ("remove", "", ""),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        let folder = scratch.path();
+        fs::create_dir_all(folder.join("other")).unwrap();
+        for name in ["precious", "other/precious", "other/mine.txt"] {
+            fs::write(folder.join(name), "precious").unwrap();
+        }
+        let staged: &[&str] = if act == "place" { &[path] } else { &[] };
+        let left = stage(
+            &folder.join("d"),
+            ".carom-stage-x",
+            &one(act, path, before),
+            staged,
+        );
+        fs::write(folder.join("d/mine.txt"), "edited").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("../other", folder.join("d/link")).unwrap();
+        done(folder, &into(&RUN, "d"));
+        assert_eq!(
+            fs::read(folder.join("d/mine.txt")).unwrap(),
+            b"edited",
+            "{act} {path}"
+        );
+        for name in ["precious", "other/precious", "other/mine.txt"] {
+            assert_eq!(
+                fs::read(folder.join(name)).unwrap(),
+                b"precious",
+                "{act} {path}"
+            );
+        }
+        assert_eq!(names(&folder.join("other")).len(), 2, "{act} {path}");
+        assert!(!left.exists());
+    }
+    // A folder of that kind of name without the mark is not carom's.
+    let scratch = tempfile::tempdir().unwrap();
+    let notes = scratch.path().join("d/.carom-stage-notes");
+    fs::create_dir_all(&notes).unwrap();
+    fs::write(notes.join("precious"), "precious").unwrap();
+    done(scratch.path(), &into(&RUN, "d"));
+    assert_eq!(fs::read(notes.join("precious")).unwrap(), b"precious");
+}
+
+/// Only a part that carom marked as one goes when the whole is there.
+#[test]
+fn a_whole_result_in_the_place_of_a_part_stays() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    done(folder, &into(&RUN, "whole"));
+    let before = files(&folder.join("whole"));
+    copy(&folder.join("whole"), &folder.join("d/unfinished"));
+    done(folder, &into(&RUN, "d"));
+    assert!(before == files(&folder.join("d/unfinished")));
+    let cost = [
+        "cost",
+        "headon-equal",
+        "--engine",
+        "lecture",
+        "--repetitions",
+        "1",
+        "--budget",
+        "300",
+    ];
+    fs::create_dir(folder.join("e")).unwrap();
+    copy(&folder.join("whole"), &folder.join("e/unfinished"));
+    refused(folder, &into(&cost, "e"), &["unfinished", "not written by"]);
+    assert!(before == files(&folder.join("e/unfinished")));
+    #[cfg(unix)]
+    {
+        fs::create_dir(folder.join("f")).unwrap();
+        std::os::unix::fs::symlink("../whole", folder.join("f/unfinished")).unwrap();
+        done(folder, &into(&RUN, "f"));
+        refused(folder, &into(&cost, "f"), &["unfinished", "is a link"]);
+        assert!(before == files(&folder.join("whole")));
+    }
+}
+
+/// The folder is removed while a run is on: that run fails, the next one does not.
+#[test]
+fn a_folder_that_is_removed_during_a_run_can_be_used_again() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let long = ["run", "cluster-8", "--engine", "lecture", "--dt", "0.00002"];
+    let mut child = start(folder, &into(&long, "d"));
+    let patience = Instant::now();
+    while !folder.join("d").exists() && patience.elapsed() < Duration::from_secs(30) {
+        thread::sleep(Duration::from_millis(2));
+    }
+    thread::sleep(Duration::from_millis(100));
+    fs::remove_dir_all(folder.join("d")).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+    done(folder, &into(&RUN, "d"));
+    assert!(
+        !names(&folder.join("d"))
+            .iter()
+            .any(|name| name.starts_with('.'))
+    );
 }

@@ -86,11 +86,12 @@ fn sweep(parent: &Path) {
 }
 
 fn remove_if_left(folder: &Path) {
-    let Ok(lock) = File::options()
-        .read(true)
-        .write(true)
-        .open(folder.join(LOCK))
-    else {
+    let path = folder.join(LOCK);
+    if !fs::symlink_metadata(&path).is_ok_and(|found| found.is_file() && found.len() == 0) {
+        // Somebody else's: carom's own is an empty file.
+        return;
+    }
+    let Ok(lock) = File::options().read(true).write(true).open(path) else {
         return;
     };
     match lock.try_lock() {

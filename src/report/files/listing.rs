@@ -10,39 +10,72 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::SUMMARY;
-
-/// Larger summaries than this are not read: carom writes none. The index of all reference cases
-/// is 0.3 MB.
-const SUMMARY_BYTES_MAX: u64 = 1 << 28;
+use crate::input::{self, STORED_BYTES_MAX};
 
 /// Digests of files by their names within one folder.
 pub(super) type Listing = BTreeMap<String, String>;
 
+/// What stands before the digest of a summary, which is taken of all the bytes before it.
+const DIGEST: &str = ",\n  \"digest\": \"";
+
 /// A summary with the files of its folder.
 #[derive(Serialize)]
-pub(super) struct Listed<'a, T> {
+struct Listed<'a, T> {
     #[serde(flatten)]
-    pub summary: &'a T,
+    summary: &'a T,
+    /// Whether more of the result is to come.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    unfinished: bool,
     /// SHA-256 of each other file of the result, as hexadecimal digits.
-    pub files: &'a Listing,
+    files: &'a Listing,
 }
 
 /// What of a summary is read to recognise it.
 #[derive(Deserialize)]
 struct Recognised {
+    #[serde(default)]
+    unfinished: bool,
     files: Listing,
 }
 
-/// The files that the summary in a folder lists; none where no summary of carom stands.
-pub(super) fn listing(folder: &Path) -> Option<Listing> {
+/// The text of a summary with the files of its folder, and a digest of itself.
+pub(super) fn listed(
+    summary: &impl Serialize,
+    files: &Listing,
+    unfinished: bool,
+) -> io::Result<String> {
+    let listed = Listed {
+        summary,
+        unfinished,
+        files,
+    };
+    let text = serde_json::to_string_pretty(&listed)?;
+    let body = text.strip_suffix("\n}").unwrap_or(&text);
+    let own = digest(body.as_bytes())?;
+    Ok(format!("{body}{DIGEST}{own}\"\n}}\n"))
+}
+
+/// The files that the summary in a folder lists, of a whole result or of an unfinished one; none
+/// where no such summary of carom stands, or where it was changed.
+pub(super) fn listing(folder: &Path, unfinished: bool) -> Option<Listing> {
     let path = folder.join(SUMMARY);
-    let found = fs::symlink_metadata(&path).ok()?;
-    if !found.is_file() || found.len() > SUMMARY_BYTES_MAX {
+    if !fs::symlink_metadata(&path).ok()?.is_file() {
         return None;
     }
-    let bytes = fs::read(&path).ok()?;
-    let recognised: Recognised = serde_json::from_slice(&bytes).ok()?;
-    Some(recognised.files)
+    let text = input::text(&path, STORED_BYTES_MAX).ok()?;
+    let (body, own) = text.rsplit_once(DIGEST)?;
+    if own != format!("{}\"\n}}\n", digest(body.as_bytes()).ok()?) {
+        return None;
+    }
+    let recognised: Recognised = serde_json::from_str(&text).ok()?;
+    let plain = recognised.files.keys().all(|name| is_plain(name));
+    (plain && recognised.unfinished == unfinished).then_some(recognised.files)
+}
+
+/// Whether a name is that of a file in its own folder.
+fn is_plain(name: &str) -> bool {
+    let only = Path::new(name).file_name();
+    only.is_some_and(|only| only == name) && name.len() <= 255 && !name.contains('\0')
 }
 
 /// What stands where a file is to be written.
@@ -92,7 +125,7 @@ impl Found {
 }
 
 /// SHA-256 of all that is read, as hexadecimal digits.
-fn digest(mut input: impl Read) -> io::Result<String> {
+pub(super) fn digest(mut input: impl Read) -> io::Result<String> {
     let mut hashed = Hashed::new(io::sink());
     io::copy(&mut input, &mut hashed)?;
     Ok(hashed.finish().0)
@@ -155,15 +188,17 @@ mod tests {
         write("a.csv", "abc");
         write("b.csv", "abc");
         write("c.csv", "abc");
-        assert!(listing(folder).is_none());
+        assert!(listing(folder, false).is_none());
         let abc = digest(&b"abc"[..]).unwrap();
-        write(
-            SUMMARY,
-            &format!("{{\"x\": 1, \"files\": {{\"a.csv\": \"{abc}\", \"b.csv\": \"{abc}\"}}}}"),
-        );
+        let names = ["a.csv", "b.csv"].map(|name| (name.to_owned(), abc.clone()));
+        let text = |unfinished| {
+            let figures = serde_json::json!({"x": 1, "digest": "mine"});
+            listed(&figures, &Listing::from(names.clone()), unfinished).unwrap()
+        };
+        write(SUMMARY, &text(false));
         write("b.csv", "abd");
         fs::create_dir(folder.join("d.csv")).unwrap();
-        let listing = listing(folder);
+        let listing = listing(folder, false);
         let found = |name| Found::at(folder, name, listing.as_ref()).unwrap();
         assert_eq!(found("a.csv"), Found::Own);
         assert_eq!(found("b.csv"), Found::Changed);
@@ -171,10 +206,27 @@ mod tests {
         assert_eq!(found("d.csv"), Found::Blocked);
         assert_eq!(found("e.csv"), Found::Free);
         assert_eq!(found(SUMMARY), Found::Own);
-        write(SUMMARY, "{\"figures\": [1, 2]}");
+        for foreign in [
+            "{\"figures\": [1, 2]}",
+            "{\"files\": {}, \"mine\": 1}",
+            &text(false).replacen("\"x\": 1", "\"x\": 2", 1),
+            &format!("{}\n", text(false)),
+            &text(true),
+        ] {
+            write(SUMMARY, foreign);
+            assert!(super::listing(folder, false).is_none(), "{foreign}");
+        }
+        assert!(super::listing(folder, true).is_none());
+        write(SUMMARY, &text(true));
+        assert_eq!(super::listing(folder, true).unwrap().len(), 2);
+        let odd = Listing::from([("../x".to_owned(), abc)]);
+        write(
+            SUMMARY,
+            &listed(&serde_json::json!({}), &odd, false).unwrap(),
+        );
         assert!(
-            super::listing(folder).is_none(),
-            "a summary of another program"
+            super::listing(folder, false).is_none(),
+            "a name of another folder"
         );
     }
 }

@@ -8,8 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
-use super::journal::Journal;
-use super::listing::{Found, Hashed, Listed, Listing, listing};
+use super::journal::{Act, Journal};
+use super::listing::{Found, Hashed, Listing, digest, listed, listing};
 use super::stage::{Stage, complete_earlier, stages};
 use super::{SUMMARY, UNFINISHED};
 use crate::error::{Error, Result};
@@ -32,6 +32,8 @@ pub enum Replace {
 pub struct Output {
     root: PathBuf,
     replace: Replace,
+    /// Whether it holds a result of which more is to come.
+    unfinished: bool,
     stage: Stage,
     /// Digests of the staged files by their folder, relative to the root, and name.
     staged: Mutex<BTreeMap<PathBuf, Listing>>,
@@ -46,6 +48,10 @@ impl Output {
     /// # Errors
     /// [`Error::Write`] with the folder, [`Error::InUse`] if another run writes there.
     pub fn open(root: &Path, replace: Replace) -> Result<Self> {
+        Self::begin(root, replace, false)
+    }
+
+    fn begin(root: &Path, replace: Replace, unfinished: bool) -> Result<Self> {
         let unwritable = |source| Error::write(root, source);
         let made = missing(root);
         fs::create_dir_all(root).map_err(unwritable)?;
@@ -53,6 +59,7 @@ impl Output {
         Ok(Self {
             root: root.to_owned(),
             replace,
+            unfinished,
             stage: Stage::begin(root, made)?,
             staged: Mutex::default(),
             _lock: lock,
@@ -104,57 +111,80 @@ impl Output {
         let staged = self.staged();
         let mut journal = Journal::default();
         let mut summaries = Vec::new();
-        for (below, files) in staged.iter() {
-            self.look(below, files.keys().map(String::as_str))?;
-            let (last, rest): (Vec<_>, Vec<_>) = files.keys().partition(|name| *name == SUMMARY);
-            journal
-                .place
-                .extend(rest.iter().map(|name| below.join(name)));
-            if !last.is_empty() {
-                summaries.push(below.join(SUMMARY));
-                journal.remove.extend(self.stale(below, files)?);
-                let unfinished = below.join(UNFINISHED);
-                if self.root.join(&unfinished).is_dir() {
-                    complete_earlier(&self.root.join(&unfinished))?;
+        // Deeper folders first; the root's own files come last.
+        let mut folders: Vec<_> = staged.iter().collect();
+        folders.sort_by_key(|(below, _)| std::cmp::Reverse(below.components().count()));
+        for (below, files) in folders {
+            self.look(below, self.unfinished, files.keys().map(String::as_str))?;
+            for name in files.keys() {
+                let act = self.act(below.join(name))?;
+                if name == SUMMARY {
+                    summaries.push(act);
+                } else {
+                    journal.place.push(act);
                 }
+            }
+            if files.contains_key(SUMMARY) {
                 journal
                     .remove
-                    .extend(self.stale(&unfinished, &Listing::new())?);
-                journal.prune.push(unfinished);
+                    .extend(self.stale(below, self.unfinished, files)?);
+                let part = below.join(UNFINISHED);
+                let place = self.root.join(&part);
+                if fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir()) {
+                    complete_earlier(&place)?;
+                    journal
+                        .remove
+                        .extend(self.stale(&part, true, &Listing::new())?);
+                    journal.prune.push(part);
+                }
             }
         }
-        // Deeper folders first; the root's own comes last.
-        summaries.sort_by_key(|path| std::cmp::Reverse(path.components().count()));
         journal.place.extend(summaries);
         Ok(journal)
     }
 
+    /// An act at a place, with what stands there.
+    fn act(&self, path: PathBuf) -> Result<Act> {
+        let place = self.root.join(&path);
+        let is_file = fs::symlink_metadata(&place).is_ok_and(|found| found.is_file());
+        let before = is_file
+            .then(|| File::open(&place).and_then(digest))
+            .transpose();
+        let before = before.map_err(|source| Error::read(&place, source))?;
+        Ok(Act { path, before })
+    }
+
     /// Files of the earlier result in a folder that the new one does not have, as long as they
     /// are as carom wrote them.
-    fn stale(&self, below: &Path, new: &Listing) -> Result<Vec<PathBuf>> {
+    fn stale(&self, below: &Path, unfinished: bool, new: &Listing) -> Result<Vec<Act>> {
         let folder = self.root.join(below);
-        let Some(listing) = listing(&folder) else {
+        let Some(listing) = listing(&folder, unfinished) else {
             return Ok(Vec::new());
         };
         let mut stale = Vec::new();
         for name in listing.keys().map(String::as_str).chain([SUMMARY]) {
             let found = Found::at(&folder, name, Some(&listing));
             let found = found.map_err(|source| Error::read(&folder.join(name), source))?;
-            if found == Found::Own && is_plain(name) && !new.contains_key(name) {
-                stale.push(below.join(name));
+            if found == Found::Own && !new.contains_key(name) {
+                stale.push(self.act(below.join(name))?);
             }
         }
         Ok(stale)
     }
 
     /// Whether files of these names may be placed in a folder below the root.
-    fn look<'n>(&self, below: &Path, names: impl IntoIterator<Item = &'n str>) -> Result<()> {
+    fn look<'n>(
+        &self,
+        below: &Path,
+        unfinished: bool,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<()> {
         let mut folder = self.root.clone();
         for part in below {
             folder.push(part);
             look_at_folder(&folder)?;
         }
-        let listing = listing(&folder);
+        let listing = listing(&folder, unfinished);
         for name in names {
             let path = folder.join(name);
             let found = Found::at(&folder, name, listing.as_ref());
@@ -216,7 +246,13 @@ impl Folder<'_> {
     /// # Errors
     /// [`Error::Foreign`] with the first file that may not be replaced, and the remedy.
     pub fn claim<'n>(&self, names: impl IntoIterator<Item = &'n str>) -> Result<()> {
-        self.output.look(&self.below, names)
+        let unfinished = self.below.ends_with(UNFINISHED);
+        self.output.look(&self.below, unfinished, names)?;
+        let path = self.path();
+        if path.is_dir() {
+            tempfile::tempfile_in(&path).map_err(|source| Error::write(&path, source))?;
+        }
+        Ok(())
     }
 
     /// The path at which a file of the result can be read: the staged one, else the one in place.
@@ -267,13 +303,10 @@ impl Folder<'_> {
         let files = self.output.staged().get(&self.below).cloned();
         let mut files = files.unwrap_or_default();
         files.remove(SUMMARY);
+        let unfinished = self.output.unfinished;
         self.write(SUMMARY, |out| {
-            let listed = Listed {
-                summary,
-                files: &files,
-            };
-            serde_json::to_writer_pretty(&mut *out, &listed)?;
-            out.write_all(b"\n")
+            let text = listed(summary, &files, unfinished)?;
+            out.write_all(text.as_bytes())
         })
     }
 
@@ -289,7 +322,9 @@ impl Folder<'_> {
     /// # Errors
     /// Those of `write` and of [`Output::commit`].
     pub fn keep_unfinished(&self, write: impl FnOnce(&Folder) -> Result<()>) -> Result<()> {
-        let part = Output::open(&self.unfinished().path(), self.output.replace)?;
+        let place = self.unfinished().path();
+        look_at_folder(&place)?;
+        let part = Output::begin(&place, self.output.replace, true)?;
         write(&part.folder())?;
         part.commit()
     }
@@ -316,13 +351,6 @@ fn missing(root: &Path) -> Vec<PathBuf> {
         .take_while(absent)
         .map(Path::to_owned)
         .collect()
-}
-
-/// Whether a name is that of a file in its own folder.
-fn is_plain(name: &str) -> bool {
-    Path::new(name)
-        .file_name()
-        .is_some_and(|plain| plain == name)
 }
 
 /// Locks a folder against other runs. The lock ends with the process, however that ends.

@@ -6,11 +6,17 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::journal::{FILES, Journal};
+use super::journal::{FILES, Journal, make_folders};
 use crate::error::{Error, Result};
 
 /// What the names of stages begin with.
 const PREFIX: &str = ".carom-stage-";
+
+/// A file in every stage, by which it is told from a folder of somebody else; and what it says.
+const MARK: (&str, &str) = (
+    "about.txt",
+    "A result of carom in the making. The next run into the folder around it removes this one.\n",
+);
 
 /// The stages there are, each with the folders that were made for it, the deepest first.
 static STAGES: Mutex<BTreeMap<PathBuf, Vec<PathBuf>>> = Mutex::new(BTreeMap::new());
@@ -57,9 +63,13 @@ impl Stage {
         let mut stages = stages();
         let unwritable = |source| Error::write(root, source);
         let path = begin_in(root).map_err(unwritable)?;
-        fs::create_dir(path.join(FILES)).map_err(unwritable)?;
         stages.insert(path.clone(), made);
-        Ok(Self { path })
+        drop(stages);
+        let stage = Self { path };
+        let (name, text) = MARK;
+        fs::write(stage.path.join(name), text).map_err(unwritable)?;
+        fs::create_dir(stage.path.join(FILES)).map_err(unwritable)?;
+        Ok(stage)
     }
 
     /// Where the stage is.
@@ -74,12 +84,9 @@ impl Stage {
 
     /// Begins a file.
     pub fn create(&self, relative: &Path) -> io::Result<File> {
-        let path = self.place(relative);
         let _stages = stages();
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
-        }
-        File::create(path)
+        make_folders(&self.path.join(FILES), relative.parent())?;
+        File::create(self.place(relative))
     }
 
     /// Leaves the stage for the next run to complete.
@@ -119,9 +126,23 @@ pub(super) fn complete_earlier(root: &Path) -> Result<()> {
             continue;
         }
         let stage = entry.path();
-        if let Some(journal) = Journal::read(&stage) {
-            let done = journal.apply(root, &stage);
-            done.map_err(|(path, source)| Error::write(&path, source))?;
+        let (name, text) = MARK;
+        let marked = fs::symlink_metadata(stage.join(name)).is_ok_and(|found| found.is_file());
+        if !marked
+            || fs::metadata(stage.join(name)).is_ok_and(|found| found.len() != text.len() as u64)
+        {
+            // Empty, if the kill came before the mark; else of somebody else.
+            let _ = fs::remove_dir(&stage);
+            continue;
+        }
+        let is_folder = fs::symlink_metadata(stage.join(FILES)).is_ok_and(|found| found.is_dir());
+        if let Some(journal) = Journal::read(&stage).filter(|_| is_folder) {
+            let done = journal.complete(root, &stage);
+            done.map_err(|(path, source)| Error::Commit {
+                path,
+                stage: stage.clone(),
+                source,
+            })?;
         }
         remove(&stage, &[]);
     }
