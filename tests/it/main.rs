@@ -44,4 +44,5 @@ mod stability;
 mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;
+mod taylor_faults;
 mod tuning;

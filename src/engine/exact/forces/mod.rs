@@ -21,6 +21,7 @@ mod certify;
 mod held;
 mod impacts;
 mod law;
+mod noise;
 mod refuse;
 mod scalar;
 mod search;

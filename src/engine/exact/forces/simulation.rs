@@ -19,9 +19,6 @@ use crate::physics::cholesky::Cholesky;
 use crate::recording::{CollapseReason, Event, EventLog, Outcome, Work, initial_states};
 use crate::scene::Scene;
 
-/// Order that is tried after an event, before the full one.
-const SHORT_ORDER: usize = 8;
-
 /// Steps between these multiples of the scale of time keep every coefficient a number.
 const SCALES: std::ops::Range<f64> = 1e-6..1e6;
 
@@ -91,6 +88,21 @@ struct Step<T> {
     /// Where it ends, in units of the series' tau.
     end: T,
     event: Option<(Touch, Cause)>,
+}
+
+impl<T: Real> Step<T> {
+    /// A step that ends where that happens.
+    fn until(series: Series<T>, Upcoming { at, touch, cause }: Upcoming<T>) -> Self {
+        let event = match cause {
+            Cause::Approach | Cause::Press | Cause::Release => Some((touch, cause)),
+            Cause::Nearer => None,
+        };
+        Self {
+            series,
+            end: at,
+            event,
+        }
+    }
 }
 
 impl<T: Real> ForcesSimulation<T> {
@@ -295,17 +307,15 @@ impl<T: Real> ForcesSimulation<T> {
         for attempt in 0..TRIES_MAX {
             let mut series = self.series();
             if attempt == 0 && self.after_event {
-                self.extend(&mut series, &factor, SHORT_ORDER.min(order));
-                if let Some(Upcoming { at, touch, cause }) = self.soon(&series) {
-                    let event = Some((touch, cause));
-                    let end = at;
+                self.extend(&mut series, &factor, self.accuracy.short_order);
+                if let Some(upcoming) = self.soon(&series) {
                     self.work.steps += 1;
-                    self.step = Some(Step { series, end, event });
+                    self.step = Some(Step::until(series, upcoming));
                     return;
                 }
             }
             self.extend(&mut series, &factor, order);
-            let end = span(&series, &self.law, self.accuracy.tolerance);
+            let end = self.span(&series);
             if !series.is_finite() || end.is_nan() {
                 // Too long a scale overflows; too short a one never does.
                 self.tau *= 2.0_f64.powi(-40);
@@ -324,11 +334,16 @@ impl<T: Real> ForcesSimulation<T> {
     /// The next event if it comes within what a series of few orders reaches, as bounces do that
     /// follow each other closely.
     fn soon(&mut self, series: &Series<T>) -> Option<Upcoming<T>> {
-        let end = span(series, &self.law, self.accuracy.tolerance);
+        let end = self.span(series);
         if !series.is_finite() || !end.is_finite() {
             return None;
         }
         self.look(series, end)
+    }
+
+    /// How far a series may be followed.
+    fn span(&self, series: &Series<T>) -> f64 {
+        self.accuracy.step * span(series, &self.law, self.accuracy.tolerance)
     }
 
     /// The first event within so much of a series.
@@ -336,7 +351,8 @@ impl<T: Real> ForcesSimulation<T> {
     fn look(&mut self, series: &Series<T>, end: f64) -> Option<Upcoming<T>> {
         let mut looked_at = 0;
         let closed = (&*self.fresh, &*self.idle);
-        let event = first_event(series, &self.surfaces, end, closed, &mut looked_at);
+        let rules = (&self.law, &self.surfaces);
+        let event = first_event(series, rules, end, closed, &mut looked_at);
         self.work.pair_tests += looked_at;
         self.effort.add::<f64>(OPERATIONS_A_LOOK * looked_at as f64);
         event
@@ -373,12 +389,14 @@ impl<T: Real> ForcesSimulation<T> {
         }
         self.tau = power_of_two(end * series.tau);
         self.work.steps += 1;
-        let event = self.look(&series, end);
-        let (end, event) = match event {
-            Some(Upcoming { at, touch, cause }) => (at, Some((touch, cause))),
-            None => (T::from_f64(end), None),
-        };
-        self.step = Some(Step { series, end, event });
+        self.step = Some(match self.look(&series, end) {
+            Some(upcoming) => Step::until(series, upcoming),
+            None => Step {
+                series,
+                end: T::from_f64(end),
+                event: None,
+            },
+        });
     }
 
     /// The pair of linked bodies with the least distance.
@@ -416,10 +434,10 @@ impl<T: Real> ForcesSimulation<T> {
         }
         self.after_event = step.event.is_some();
         let progress = (self.time.sum - before).to_f64();
-        if let Some(event) = step.event {
-            self.resolve(Some(event), log);
-        } else {
-            self.forget_open();
+        match step.event {
+            Some((touch, Cause::Press)) => self.hold(touch),
+            Some(event) => self.resolve(Some(event), log),
+            None => self.forget_open(),
         }
         let bodies = step
             .event
@@ -429,14 +447,23 @@ impl<T: Real> ForcesSimulation<T> {
         }
     }
 
-    /// A gap that has opened needs no care any more.
+    /// Keeps a contact closed that begins to press without an impact; if it does not press after
+    /// all, the series of its force lets it go.
+    fn hold(&mut self, touch: Touch) {
+        self.fresh.retain(|fresh| fresh.touch != touch);
+        self.held.push(touch);
+    }
+
+    /// A gap that has opened needs no care any more; of one that has opened by less than rounding
+    /// nothing but that it is closed is known.
     fn forget_open(&mut self) {
         if self.fresh.is_empty() {
             return;
         }
         let position = self.positions();
         let surfaces = &self.surfaces;
-        self.fresh.retain(|fresh| {
+        self.fresh.retain_mut(|fresh| {
+            fresh.skip = 1;
             let far = fresh.touch.bodies().map(|body| size(&position[body]));
             let gap = surfaces.gap(fresh.touch, &position).to_f64();
             gap <= closed_below::<T>(far[0].max(far[1]) + surfaces.reach(fresh.touch))
