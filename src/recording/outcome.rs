@@ -118,6 +118,15 @@ impl Outcome {
             Self::BudgetSpent { time } => {
                 format!("the work allowed was spent at t = {time} s; the recording ends there")
             }
+            Self::Collapsed {
+                time,
+                a,
+                b: None,
+                reason: CollapseReason::Singularity,
+            } => format!(
+                "the forces on `{}` leave no step at t = {time} s; the recording ends before it",
+                scene.bodies[*a].name
+            ),
             Self::Collapsed { time, a, b, reason } => format!(
                 "{reason} at t = {time} s (`{}` and {}); the recording ends before it",
                 scene.bodies[*a].name,

@@ -22,6 +22,7 @@ mod held;
 mod impacts;
 mod law;
 mod noise;
+mod nudge;
 mod refuse;
 mod scalar;
 mod search;

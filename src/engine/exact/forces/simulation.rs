@@ -3,12 +3,13 @@
 use super::accuracy::{Accuracy, UNDETERMINED_BOUNCE_HEIGHT};
 use super::impacts::{Aftermath, Instant, closed_below};
 use super::law::Law;
+use super::nudge::nudge;
 use super::refuse::check;
 use super::scalar::{Real, Triple, size};
 use super::search::{Cause, Fresh, Upcoming, first_event};
 use super::series::{Series, as_real};
 use super::span::span;
-use super::touch::{Surfaces, Touch};
+use super::touch::{Surfaces, Touch, arms};
 use super::watchdog::Watchdog;
 use crate::engine::Simulation;
 use crate::engine::exact::effort::Effort;
@@ -58,6 +59,8 @@ pub struct ForcesSimulation<T: Real> {
     watchdog: Watchdog,
     outcome: Option<Outcome>,
     undetermined: Option<Undetermined>,
+    /// Whether the last sample stands at an event, as far as rounding tells.
+    near_event: bool,
     is_unsettled: bool,
     is_patient: bool,
     work: Work,
@@ -137,6 +140,7 @@ impl<T: Real> ForcesSimulation<T> {
             watchdog: Watchdog::new(scene.duration),
             outcome: None,
             undetermined: None,
+            near_event: false,
             is_unsettled: false,
             is_patient: false,
             work: Work::default(),
@@ -252,6 +256,7 @@ impl<T: Real> ForcesSimulation<T> {
             law: &self.law,
             surfaces: &self.surfaces,
             bounce_height: self.bounce_height(),
+            sample_every: self.sample_every,
             order: self.order,
             position: &position,
             held: &self.held,
@@ -316,8 +321,9 @@ impl<T: Real> ForcesSimulation<T> {
             }
             self.extend(&mut series, &factor, order);
             let end = self.span(&series);
-            if !series.is_finite() || end.is_nan() {
-                // Too long a scale overflows; too short a one never does.
+            if !series.is_finite() || end.is_nan() || end == 0.0 {
+                // Too long a scale overflows, in the coefficients or in their squares, which
+                // leaves no step; too short a one never does.
                 self.tau *= 2.0_f64.powi(-40);
             } else if end.is_finite() && end > 0.0 && !SCALES.contains(&end) {
                 self.tau = power_of_two(self.tau * end);
@@ -493,6 +499,48 @@ impl<T: Real> ForcesSimulation<T> {
             .collect();
     }
 
+    /// What is known of the time of an event there: its rounding, and the truncation of the steps
+    /// up to it, about a hundred of them long. An event so near to a sample belongs to it.
+    fn instant(&self, time: f64) -> f64 {
+        (16.0 * T::ROUNDING + 100.0 * self.accuracy.tolerance) * time.abs()
+    }
+
+    /// Whether an event stands so near to the last sample that rounding decides which of the two
+    /// comes first.
+    pub(super) fn is_near_event(&self) -> bool {
+        self.near_event
+    }
+
+    /// Lets what happens at time 0 happen, so that the state there shows it.
+    pub(super) fn begin(&mut self, log: Option<&mut EventLog>) {
+        if self.step.is_none() && self.outcome.is_none() {
+            self.resolve(None, log);
+            self.show(None);
+        }
+    }
+
+    /// Moves every coordinate and component of a velocity by that share of the
+    /// largest, by lot; contacts that are closed and neither open nor close stay so.
+    pub(super) fn move_inputs(&mut self, share: f64, seed: u64) {
+        let (mut position, mut velocity) = (self.positions(), self.velocities());
+        let fastest = velocity.iter().map(size).fold(0.0, f64::max);
+        let together = self.surfaces.all().filter(|touch| {
+            let far = touch.bodies().map(|body| size(&position[body]));
+            let far = far[0].max(far[1]) + self.surfaces.reach(*touch);
+            let gap = self.surfaces.gap(*touch, &position).to_f64();
+            let rate = arms(*touch, &position).rate(&velocity).to_f64();
+            let still = 64.0 * T::ROUNDING * fastest * self.surfaces.reach(*touch);
+            gap.abs() <= closed_below::<T>(far) && rate.abs() <= still
+        });
+        self.held = together.collect();
+        nudge(&mut position, &mut velocity, share, seed);
+        self.set_positions(&position);
+        self.set_velocities(&velocity);
+        self.close_held();
+        self.held.clear();
+        self.idle.clear();
+    }
+
     /// Steps on until the step that holds that time, all events up to it behind it.
     fn reach(&mut self, target: f64, mut log: Option<&mut EventLog>) {
         if self.step.is_none() && self.outcome.is_none() {
@@ -511,8 +559,7 @@ impl<T: Real> ForcesSimulation<T> {
             };
             let left = T::from_f64(target) - self.time.sum - self.time.carry;
             let beyond = (step.end.times(step.series.tau) - left).to_f64();
-            // An event at the sample's instant, up to the rounding of its time, belongs to it.
-            let at_once = 16.0 * T::ROUNDING * target.abs();
+            let at_once = self.instant(target);
             let passes = if step.event.is_some() {
                 beyond <= at_once
             } else {
@@ -521,6 +568,9 @@ impl<T: Real> ForcesSimulation<T> {
             if passes {
                 self.cross(&step, log.as_deref_mut());
             } else {
+                let since = (left + self.time.carry).to_f64();
+                self.near_event = self.after_event && since.abs() <= at_once
+                    || step.event.is_some() && beyond <= 16.0 * at_once;
                 self.show(Some((&step, left.times(1.0 / step.series.tau))));
                 self.step = Some(step);
                 return;
