@@ -201,3 +201,101 @@ fn what_is_claimed_holds_on_every_scene_that_was_once_wrong() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// Bodies that start at one point, softened: their forces are finite everywhere. They used to end
+/// as "bodies fell into one point", in which nothing falls.
+#[test]
+fn softened_bodies_go_through_one_point() {
+    let scene = scene_of("softened-coincident");
+    let found = exact(&scene);
+    assert_eq!(found.outcome, Outcome::Finished);
+    let digits = found.digits.as_ref().unwrap();
+    assert!(digits.iter().all(|d| d.position >= 14 && d.velocity >= 14));
+    // d'' = -11 d/(d² + 1)^(3/2) from d = 0, d' = 1: the energy d'²/2 - 11/(d² + 1)^(1/2) stays, and
+    // the centre of mass moves on at 0.5 m/s.
+    for (sample, states) in found.samples().enumerate() {
+        let apart = states[1].position - states[0].position;
+        let speed = states[1].velocity - states[0].velocity;
+        let energy = 0.5 * speed.norm_squared() - 11.0 / (apart.norm_squared() + 1.0).sqrt();
+        assert!((energy + 10.5).abs() < 1e-13, "{sample}: {energy}");
+        let middle = 0.5 * (states[0].position.x + states[1].position.x);
+        assert!(
+            (middle - 0.5 * scene.sample_time(sample)).abs() < 1e-15,
+            "{sample}: {middle}"
+        );
+    }
+}
+
+/// One body under strong drag beside an attraction that has nothing to attract: a closed form.
+#[test]
+fn strong_drag_beside_attraction_of_nothing_is_a_closed_form() {
+    let scene = scene_of("stiff-drag-beside-attraction");
+    let found = exact(&scene);
+    assert_eq!(found.outcome, Outcome::Finished);
+    for (sample, states) in found.samples().enumerate().skip(1) {
+        let lost = (-1e6 * scene.sample_time(sample)).exp_m1();
+        assert!(
+            (states[0].position.x + lost * 1e-6).abs() < 1e-20,
+            "{sample}"
+        );
+        assert!(
+            (states[0].velocity.x - (1.0 + lost)).abs() < 1e-15,
+            "{sample}"
+        );
+    }
+}
+
+/// The same drag on two bodies that do attract: stiff, but regular.
+#[test]
+fn strong_drag_on_bodies_that_attract_is_regular() {
+    let mut scene = scene_of("stiff-drag-beside-attraction");
+    let other = carom::scene::Body {
+        name: "b1".into(),
+        position: [0.0, 2.0, 0.0],
+        velocity: [0.0; 3],
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies.push(other);
+    scene.duration = 0.25;
+    if let Some(drag) = &mut scene.effects.drag {
+        drag.coefficient = 1e4;
+    }
+    let found = exact(&scene);
+    assert_eq!(found.outcome, Outcome::Finished);
+    let last = found.digits.as_ref().unwrap().last().unwrap();
+    assert!(last.position >= 10, "{last:?}");
+    // On the slow course force and drag balance: d' = -2/(1e4 d²), up to 1e-4 of it.
+    let apart = found.sample(1)[1].position - found.sample(1)[0].position;
+    let slow = (8.0_f64 - 6.0 * 0.25 / 1e4).cbrt();
+    assert!((apart.norm() - slow).abs() < 1e-7, "{apart:?} {slow}");
+}
+
+/// Eight bodies at one point, softened, and one of 3e-247 kg: `exact` ended at once, and
+/// `exact-fast` finished, off by half, without a word.
+#[test]
+fn what_exact_goes_through_exact_fast_does_too() {
+    let scene = scene_of("fast-off-without-a-word");
+    let found = exact(&scene);
+    let fast = record(&scene, &engine("exact-fast").unwrap(), DEFAULT_DT).unwrap();
+    assert_eq!([found.outcome, fast.outcome], [Outcome::Finished; 2]);
+    let last = found.digits.as_ref().unwrap().last().unwrap();
+    assert!(last.position >= 12, "{last:?}");
+    let length = Sizes::of(&found, &[]).length;
+    let both = found.samples().flatten().zip(fast.samples().flatten());
+    let apart = both
+        .map(|(a, b)| (a.position - b.position).norm())
+        .fold(0.0, f64::max);
+    assert!(apart < 1e-10 * length, "{apart:e} of {length}");
+}
+
+/// Where order decides at an exact tie, nothing is claimed that the other order does not share.
+#[test]
+fn a_symmetric_tie_is_claimed_up_to_it_and_not_beyond() {
+    let case = fault("symmetric-tie");
+    let found = exact(&case.scene);
+    let (position, velocity) = excess(&case.truth, &found);
+    assert!(
+        position <= 1.0 && velocity <= 1.0,
+        "{position:e} {velocity:e}"
+    );
+}

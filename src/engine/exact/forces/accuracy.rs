@@ -46,12 +46,12 @@ impl Accuracy {
     /// shorter steps, half the threshold of speed.
     ///
     /// The steps differ so that a step too long for one order's last terms is too long by another
-    /// factor in the other: a truncation that both shared could not be seen. 0.7 to the power of
-    /// the order is 2e-4 and less.
+    /// factor in the other: a truncation that both shared could not be seen. 0.85 to the power of
+    /// the order is 0.02 and less.
     pub const FAST_AGAIN: Self = Self {
         order: 24,
         short_order: 11,
-        step: 0.7,
+        step: 0.85,
         tolerance: 1e-18,
         bounce_height: 0.25e-13,
     };
@@ -61,7 +61,7 @@ impl Accuracy {
     pub const WIDE_AGAIN: Self = Self {
         order: 37,
         short_order: 11,
-        step: 0.7,
+        step: 0.85,
         tolerance: 1e-23,
         bounce_height: 0.25e-24,
     };
