@@ -128,7 +128,7 @@ impl Real for Wide {
     fn exp(self) -> Self {
         let size = self.0.hi();
         // Neither the reciprocal of what is infinite nor a sum with it is a number.
-        if size < -1490.0 || size > 709.0 {
+        if !(-1490.0..=709.0).contains(&size) {
             return Self::from_f64(size.exp());
         }
         if size < -700.0 {

@@ -201,7 +201,7 @@ impl<'a, T: Real> Noise<'a, T> {
                 Touch::Wall { body, .. } => add(body, held.force[k].to_f64().abs()),
             }
         }
-        let drag = self.law.drag.map_or(0.0, |drag| drag.to_f64());
+        let drag = self.law.drag.map_or(0.0, Real::to_f64);
         for (body, velocity) in velocity[k].iter().enumerate() {
             add(body, drag * size(velocity));
         }

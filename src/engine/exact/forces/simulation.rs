@@ -59,8 +59,8 @@ pub struct ForcesSimulation<T: Real> {
     watchdog: Watchdog,
     outcome: Option<Outcome>,
     undetermined: Option<Undetermined>,
-    /// Whether the last sample stands at an event, as far as rounding tells.
-    near_event: bool,
+    /// Time from the last sample to the nearest event, over what is known of an event's time.
+    nearest_event: f64,
     is_unsettled: bool,
     is_patient: bool,
     work: Work,
@@ -140,7 +140,7 @@ impl<T: Real> ForcesSimulation<T> {
             watchdog: Watchdog::new(scene.duration),
             outcome: None,
             undetermined: None,
-            near_event: false,
+            nearest_event: f64::INFINITY,
             is_unsettled: false,
             is_patient: false,
             work: Work::default(),
@@ -508,7 +508,7 @@ impl<T: Real> ForcesSimulation<T> {
     /// Whether an event stands so near to the last sample that rounding decides which of the two
     /// comes first.
     pub(super) fn is_near_event(&self) -> bool {
-        self.near_event
+        self.nearest_event <= 1.0
     }
 
     /// Lets what happens at time 0 happen, so that the state there shows it.
@@ -568,9 +568,18 @@ impl<T: Real> ForcesSimulation<T> {
             if passes {
                 self.cross(&step, log.as_deref_mut());
             } else {
-                let since = (left + self.time.carry).to_f64();
-                self.near_event = self.after_event && since.abs() <= at_once
-                    || step.event.is_some() && beyond <= 16.0 * at_once;
+                let since = (left + self.time.carry).to_f64().abs();
+                let ago = if self.after_event {
+                    since
+                } else {
+                    f64::INFINITY
+                };
+                let ahead = if step.event.is_some() {
+                    beyond
+                } else {
+                    f64::INFINITY
+                };
+                self.nearest_event = ago.min(ahead / 16.0) / at_once;
                 self.show(Some((&step, left.times(1.0 / step.series.tau))));
                 self.step = Some(step);
                 return;
