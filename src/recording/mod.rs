@@ -126,6 +126,14 @@ impl Recording {
         self.states.extend_from_slice(states);
     }
 
+    /// Puts other states in the place of the start: those after what happens at time 0. Shape of
+    /// `states`: `[body]`.
+    pub fn restart(&mut self, states: &[BodyState]) {
+        for (own, state) in self.states.iter_mut().zip(states) {
+            *own = *state;
+        }
+    }
+
     /// How many samples there are, the start included.
     #[must_use]
     pub fn sample_count(&self) -> usize {

@@ -124,6 +124,15 @@ impl Outcome {
                     number(*time)
                 )
             }
+            Self::Collapsed {
+                time,
+                a,
+                b: None,
+                reason: CollapseReason::Singularity,
+            } => format!(
+                "the forces on `{}` leave no step at t = {time} s; the recording ends before it",
+                scene.bodies[*a].name
+            ),
             Self::Collapsed { time, a, b, reason } => format!(
                 "{reason} at t = {} s ({} and {}); the recording ends before it",
                 number(*time),

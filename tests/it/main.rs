@@ -18,6 +18,7 @@ mod drift;
 mod effects;
 mod exact_flight;
 mod exact_forces;
+mod exact_lies;
 mod example_solvers;
 #[cfg(unix)]
 mod external;
@@ -51,4 +52,5 @@ mod stability;
 mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;
+mod taylor_faults;
 mod tuning;

@@ -27,6 +27,11 @@ const OPERATIONS_A_PAIR: f64 = 40.0;
 /// undetermined, relative to the largest speed.
 const SAME_ANSWER: f64 = 1e-9;
 
+/// A bounce that is none lasts at most so many roots of the least height of the time between
+/// samples: 1e-9 of it in double-double, 3e-4 in doubles. A ball of a metre under 10 m/s² bounces
+/// a thousand times shorter at the least height.
+const SHORT_BOUNCE: f64 = 1e3;
+
 /// An impulse that was transferred.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Impact {
@@ -58,6 +63,8 @@ pub(super) struct Instant<'a, T> {
     pub(super) surfaces: &'a Surfaces<T>,
     /// A bounce that would rise less than this share of the pair's reach is none.
     pub(super) bounce_height: f64,
+    /// Time between samples, s.
+    pub(super) sample_every: f64,
     pub(super) order: TieOrder,
     pub(super) position: &'a [Triple<T>],
     /// The contacts that pressed until now.
@@ -193,7 +200,7 @@ impl<T: Real> Instant<'_, T> {
                 reach: T::from_f64(reach),
                 restitution,
                 length,
-                least_bounce: (2.0 * self.bounce_height * length * press.max(0.0)).sqrt(),
+                least_bounce: self.least_bounce(length, press.max(0.0), restitution.to_f64()),
             }
         };
         let mut meetings: Vec<_> = touches.map(meeting).collect();
@@ -201,12 +208,30 @@ impl<T: Real> Instant<'_, T> {
         meetings
     }
 
+    /// The speed of a bounce that is none.
+    ///
+    /// Bounces without loss never end, and each is one. With loss, one that would rise less than
+    /// the least height is none, if it is also short between two samples: a scene as slow or as
+    /// small as its bounces shows them.
+    fn least_bounce(&self, length: f64, press: f64, restitution: f64) -> f64 {
+        if restitution >= 1.0 {
+            return 0.0;
+        }
+        let low = (2.0 * self.bounce_height * length * press).sqrt();
+        let time = SHORT_BOUNCE * self.bounce_height.sqrt() * self.sample_every;
+        low.min(0.5 * press * time)
+    }
+
     /// Whether the gap is zero up to the rounding of the positions, or to the least bounce.
     fn closed(&self, touch: Touch) -> bool {
         let bodies = touch.bodies();
         let far = bodies.map(|body| size(&self.position[body]) + self.surfaces.radii[body]);
         let gap = self.surfaces.gap(touch, self.position).to_f64();
-        let least_bounce = self.bounce_height * self.surfaces.reach(touch);
+        let least_bounce = if self.surfaces.restitution(touch) >= T::one() {
+            0.0
+        } else {
+            self.bounce_height * self.surfaces.reach(touch)
+        };
         gap <= closed_below::<T>(far[0].max(far[1])).max(least_bounce)
     }
 
