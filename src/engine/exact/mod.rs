@@ -91,7 +91,8 @@ pub fn record(scene: &Scene, voice: &str, settings: ExactSettings) -> Result<Rec
     let lost = |(sample, states): (usize, &[BodyState])| {
         Outcome::blown_up(states, scene.sample_time(sample)).map(|outcome| (sample, outcome))
     };
-    if let Some((sample, outcome)) = recording.samples().enumerate().find_map(lost) {
+    let found = recording.samples().enumerate().find_map(lost);
+    if let Some((sample, outcome)) = found {
         recording = recording.up_to(sample, scene);
         recording.outcome = outcome;
         certified.digits.truncate(recording.sample_count());
