@@ -93,7 +93,10 @@ pub fn record(scene: &Scene, voice: &str, settings: ExactSettings) -> Result<Rec
     };
     let found = recording.samples().enumerate().find_map(lost);
     if let Some((sample, outcome)) = found {
-        recording = recording.up_to(sample, scene);
+        recording = match sample {
+            0 => Recording::at_start(voice, scene),
+            _ => recording.up_to(sample, scene),
+        };
         recording.outcome = outcome;
         certified.digits.truncate(recording.sample_count());
     }
