@@ -37,6 +37,7 @@ mod oracle;
 mod orders;
 mod outputs;
 mod own_truth;
+mod pages;
 mod plain_loop;
 mod plan;
 #[cfg(feature = "rapier")]
