@@ -20,6 +20,8 @@ struct Page<'a> {
     summary: &'a Summary,
     unit: &'static str,
     size: String,
+    /// Who computes another model than the scene's, and which.
+    models: Vec<String>,
     findings: Vec<String>,
     verdicts: Vec<String>,
     /// None for a page that stands alone.
@@ -100,6 +102,7 @@ pub(super) fn case_page(
         summary,
         unit,
         size: with_unit(summary.scale.length, unit),
+        models: other_models(summary),
         findings: findings(summary, shown)
             .iter()
             .map(|(who, what)| format!("**{who}** {what}"))
@@ -183,7 +186,35 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
     found
 }
 
-/// Who is wrong, from when and by how much, a sentence each.
+/// Who computes another model than the scene's on purpose, a sentence for each way of it.
+fn other_models(summary: &Summary) -> Vec<String> {
+    let mut ways: Vec<(&str, Vec<String>)> = Vec::new();
+    for voice in &summary.voices {
+        let Some(way) = voice.another_model else {
+            continue;
+        };
+        let name = code(&voice.voice).to_string();
+        match ways.iter_mut().find(|(known, _)| *known == way) {
+            Some((_, names)) => names.push(name),
+            None => ways.push((way, vec![name])),
+        }
+    }
+    let told = |(way, names): &(&str, Vec<String>)| {
+        let computes = if names.len() == 1 {
+            "computes"
+        } else {
+            "compute"
+        };
+        format!(
+            "**On purpose, {} {computes} another model here: {way}.** How far that leads from the \
+             others is a difference between models, and no error.",
+            names.join(", ")
+        )
+    };
+    ways.iter().map(told).collect()
+}
+
+/// Who deviates from the reference, from when and by how much, a sentence each.
 fn verdicts(summary: &Summary) -> Vec<String> {
     let unit = summary.length_unit.symbol();
     let sentence = |verdict: &Verdict| {
@@ -212,10 +243,14 @@ fn verdicts(summary: &Summary) -> Vec<String> {
         } else {
             let off = off.join(", ");
             format!(
-                "{} leaves it: {off}; at most {error}.",
+                "{} deviates from it: {off}; by at most {error}.",
                 code(&verdict.engine)
             )
         };
+        let voice = summary.voice(&verdict.engine);
+        if voice.is_some_and(|voice| voice.another_model.is_some()) {
+            return format!("{stands} It computes another model, so that this is no error.");
+        }
         match &verdict.limit {
             Some(limit) => format!("{stands} {}", limits::sentence(limit, unit)),
             None => stands,
@@ -358,7 +393,7 @@ fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
         position: with_unit(pair.position_divergence_max, unit),
         relative: percent(pair.position_divergence_relative),
         when: format!("{} s", engineering(pair.at_time_s)),
-        body: pair.worst_body.clone(),
+        body: code(&pair.worst_body).to_string(),
         velocity: with_unit(pair.velocity_divergence_rms_max, &speed),
         energy: percent(pair.energy_difference_max),
         momentum: percent(pair.momentum_difference_max),

@@ -21,6 +21,7 @@ mod exact_forces;
 mod example_solvers;
 #[cfg(unix)]
 mod external;
+mod fairness;
 mod faults;
 mod faulty;
 #[cfg(feature = "rapier")]

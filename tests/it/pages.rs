@@ -131,8 +131,7 @@ impl Page {
 
     fn paragraph(&mut self, source: &str) {
         if source.starts_with('|') {
-            self.faults
-                .push(format!("a table that is none: {source}"));
+            self.faults.push(format!("a table that is none: {source}"));
         }
     }
 
@@ -280,10 +279,7 @@ fn cost_page(folder: &Path) {
     let scenes = array(&data, "scenes");
     assert_eq!(page.lists("What accuracy costs in time"), [scenes.len()]);
     let offers = array(&array(&scenes[0], "tags")[0], "offers");
-    assert_eq!(
-        page.first_column("The price tag"),
-        names(offers, "engine")
-    );
+    assert_eq!(page.first_column("The price tag"), names(offers, "engine"));
     let own: BTreeSet<_> = page.pictures.iter().cloned().collect();
     assert_eq!(own, pictures(folder));
 }
@@ -350,7 +346,15 @@ fn names_of_all_kinds_leave_a_page_whole() {
     let engines = "lecture,exact-fast";
     carom(
         folder,
-        &["run", "mine.toml", "--engine", engines, "--quiet", "--out", "d"],
+        &[
+            "run",
+            "mine.toml",
+            "--engine",
+            engines,
+            "--quiet",
+            "--out",
+            "d",
+        ],
     );
     case_page(&folder.join("d"));
 }
@@ -359,7 +363,14 @@ fn names_of_all_kinds_leave_a_page_whole() {
 fn studies_of_effects_and_of_bodies_read_as_their_data() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path();
-    let short = ["--engine", "lecture", "--repetitions", "1", "--quiet", "--out"];
+    let short = [
+        "--engine",
+        "lecture",
+        "--repetitions",
+        "1",
+        "--quiet",
+        "--out",
+    ];
     carom(
         folder,
         &[&["effects", "shot-2-96"], &short[..], &["effects"]].concat(),
@@ -382,7 +393,10 @@ fn studies_of_effects_and_of_bodies_read_as_their_data() {
 #[test]
 fn faults_of_pages_are_seen() {
     let faults = |text: &str| Page::parse(text).faults.len();
-    assert_eq!(faults("- a\n- b\n\ntext\n\n| a | b |\n|---|---|\n| 1 | 2 |\n"), 0);
+    assert_eq!(
+        faults("- a\n- b\n\ntext\n\n| a | b |\n|---|---|\n| 1 | 2 |\n"),
+        0
+    );
     assert_eq!(faults("| a | b |\n|---|---|\n| 1 \\| 2 | 3 |\n"), 0);
     for fault in [
         "a: - b\n- c\ntext\n",

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Judged, StabilityStudy};
+use super::{Cell, Judged, StabilityStudy};
 use crate::study::Made;
 
 /// How many of its cells an engine held.
@@ -50,6 +50,34 @@ impl StabilitySummary {
                 .collect(),
             failures: failures.cloned().collect(),
         }
+    }
+
+    /// Runs, a case at a step each, in which one engine holds every bound and another breaks one;
+    /// none where one of them took no part.
+    #[must_use]
+    pub fn held_where_broken(&self, holder: &str, breaker: &str) -> Option<usize> {
+        let took_part = |name: &str| self.scores.iter().any(|score| score.engine == name);
+        if !took_part(holder) || !took_part(breaker) {
+            return None;
+        }
+        let of = |name: &str| {
+            let failures = self.failures.iter().map(|judged| &judged.cell);
+            let name = name.to_owned();
+            failures.filter(move |cell| cell.engine == name)
+        };
+        let fails_too = |broken: &Cell| {
+            let same = |cell: &Cell| cell.dt.is_none() || cell.dt == broken.dt;
+            of(holder).any(|cell| cell.case == broken.case && same(cell))
+        };
+        let broken = of(breaker).filter(|cell| cell.was_run() && !fails_too(cell));
+        Some(broken.count())
+    }
+
+    /// The most runs that an engine takes part in, a case at a step each, refused ones included.
+    #[must_use]
+    pub fn runs(&self) -> usize {
+        let runs = self.scores.iter().map(|score| score.run + score.not_run);
+        runs.max().unwrap_or(0)
     }
 }
 
