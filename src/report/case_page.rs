@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::format::{code, whole_percent};
+use super::models::other_models;
 use super::studies::CaseStudies;
 use super::template::fill;
 use super::{engineering, limits, percent};
@@ -151,7 +152,7 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         let time = engineering(from.time);
         let told = format!(
             "finds the scene undetermined by the model from {time} s on: simultaneous events in \
-             another order end {spread}, and no engine is called wrong for it."
+             another order end {spread}, and no engine is held to it from there."
         );
         Some((voice.voice.clone(), told))
     });
@@ -184,34 +185,6 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         found.extend(pairs.map(|pair| parting(summary, pair)));
     }
     found
-}
-
-/// Who computes another model than the scene's on purpose, a sentence for each way of it.
-fn other_models(summary: &Summary) -> Vec<String> {
-    let mut ways: Vec<(&str, Vec<String>)> = Vec::new();
-    for voice in &summary.voices {
-        let Some(way) = voice.another_model else {
-            continue;
-        };
-        let name = code(&voice.voice).to_string();
-        match ways.iter_mut().find(|(known, _)| *known == way) {
-            Some((_, names)) => names.push(name),
-            None => ways.push((way, vec![name])),
-        }
-    }
-    let told = |(way, names): &(&str, Vec<String>)| {
-        let computes = if names.len() == 1 {
-            "computes"
-        } else {
-            "compute"
-        };
-        format!(
-            "**On purpose, {} {computes} another model here: {way}.** How far that leads from the \
-             others is a difference between models, and no error.",
-            names.join(", ")
-        )
-    };
-    ways.iter().map(told).collect()
 }
 
 /// Who deviates from the reference, from when and by how much, a sentence each.

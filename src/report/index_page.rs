@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
-use super::nearer::nearer;
+use super::nearer::{nearer, within};
 use super::studies::StudyNote;
 use super::template::{fill, plain_text};
 use super::{Folder, Studies, engineering, percent};
@@ -14,7 +14,7 @@ use crate::case::{Evidence, TRUTH};
 use crate::compare::{RIGHT_WITHIN, Remainder};
 use crate::engine::EngineSpec;
 use crate::error::Result;
-use crate::study::{PairSummary, Summary, VoiceSummary, median};
+use crate::study::{PairSummary, Summary, VoiceSummary};
 
 const TEMPLATE: &str = include_str!("../../templates/index.md");
 
@@ -222,7 +222,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
         sentences.extend(parting(summaries, &first.name, &second.name));
     }
     sentences.extend(energy_drifts(summaries, engines));
-    sentences.extend(verdicts(summaries, engines));
+    sentences.extend(within(summaries, engines));
     sentences.extend(remainders(summaries, engines));
     let unfinished: Vec<_> = summaries
         .iter()
@@ -309,49 +309,6 @@ fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String
         worst.join(", ")
     );
     (!worst.is_empty()).then_some(said)
-}
-
-/// How often each engine stays near the reference, and its middle error; where it computes another
-/// model nothing is counted.
-fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
-    let judged = summaries
-        .iter()
-        .filter(|summary| !summary.verdicts.is_empty());
-    let count = judged.count();
-    let of_engine = |spec: &EngineSpec| {
-        let all = summaries.iter().flat_map(|summary| {
-            let verdicts = summary.verdicts.iter();
-            verdicts.map(move |verdict| (summary, verdict))
-        });
-        let own = all.filter(|(_, verdict)| verdict.engine == spec.name);
-        let (other, own): (Vec<_>, Vec<_>) = own.partition(|(summary, verdict)| {
-            let voice = summary.voice(&verdict.engine);
-            voice.is_some_and(|voice| voice.another_model.is_some())
-        });
-        let right = own.iter().filter(|(_, own)| own.is_right()).count();
-        let errors: Vec<_> = own.iter().map(|(_, own)| own.error_relative).collect();
-        if errors.is_empty() {
-            return None;
-        }
-        let middle = percent(median(&errors));
-        let other = match other.len() {
-            0 => String::new(),
-            count => format!("; another model in {count}"),
-        };
-        Some(format!(
-            "{} in {right} of {} (median error {middle}{other})",
-            code(&spec.name),
-            own.len()
-        ))
-    };
-    let rows: Vec<_> = engines.iter().filter_map(of_engine).collect();
-    let said = format!(
-        "{count} cases have a reference. The engines stay within {} of the scene's size of it, with \
-         every impact in order: {}.",
-        whole_percent(RIGHT_WITHIN),
-        rows.join(", ")
-    );
-    (!rows.is_empty()).then_some(said)
 }
 
 /// How often each engine's error is of which kind, where a study of cost has told.

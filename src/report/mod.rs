@@ -14,6 +14,7 @@ mod files;
 mod format;
 mod index_page;
 mod limits;
+mod models;
 mod nearer;
 mod output;
 mod overhead;

@@ -16,7 +16,7 @@ pub struct Handling {
 pub const RAPIER_HANDLING: [Handling; 11] = [
     Handling {
         what: "rest: the velocity of a ball slower than the rest speed is set to 0 after each step",
-        why: "the lecture's game has it; Rapier's sleeping is another thing, it leaves the velocity",
+        why: "the lecture's game has it; Rapier's sleeping has a threshold and a delay of its own",
         change: "leave `[effects.rest]` out of the scene",
     },
     Handling {

@@ -103,3 +103,56 @@ impl Score {
         score
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn broken(engine: &str, case: &str, dt: Option<f64>) -> Judged {
+        let cell = Cell {
+            case: case.to_owned(),
+            engine: engine.to_owned(),
+            dt,
+            outcome: "EnergyGrew".to_owned(),
+            energy_error: None,
+            momentum_error: None,
+            max_penetration: None,
+            missed_events: None,
+            at_time: None,
+            steps: Some(1),
+            cost_ms: None,
+        };
+        Judged {
+            cell,
+            broken: None,
+            phase: None,
+            impacts: None,
+        }
+    }
+
+    #[test]
+    fn a_run_counts_at_the_same_case_and_step_alone() {
+        let score = |engine: &str| Score {
+            engine: engine.to_owned(),
+            held: 0,
+            run: 3,
+            not_run: 1,
+            cases_held: 0,
+        };
+        let summary = StabilitySummary {
+            made: Made::now(),
+            cases: 2,
+            scores: ["a", "b"].map(score).to_vec(),
+            failures: vec![
+                broken("a", "x", Some(0.1)),
+                broken("a", "x", Some(0.01)),
+                broken("a", "y", Some(0.1)),
+                broken("b", "x", Some(0.1)),
+            ],
+        };
+        assert_eq!(summary.held_where_broken("b", "a"), Some(2));
+        assert_eq!(summary.held_where_broken("a", "b"), Some(0));
+        assert_eq!(summary.held_where_broken("a", "absent"), None);
+        assert_eq!(summary.runs(), 4);
+    }
+}
