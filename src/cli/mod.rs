@@ -38,7 +38,7 @@ enum Command {
     /// Run scenes on every engine over a ladder of steps, or a gas of more and more bodies: what
     /// does accuracy cost in time?
     Cost(cost::Args),
-    /// Run hard cases on every engine and step: which engine survives what?
+    /// Run hard cases on every engine and step: which engine stays within bounds?
     Stability(stability::Args),
     /// Hold solvers against truth, their own stored recordings and Rapier's: exit code 1 if one no
     /// longer agrees

@@ -1,4 +1,4 @@
-//! `carom stability`: which engine survives what, at which step.
+//! `carom stability`: which engine stays within bounds, at which step.
 
 use std::path::PathBuf;
 

@@ -15,8 +15,9 @@ pub use impulse::ImpulseSimulation;
 pub use plan::{Phase, Plan};
 pub use record::{drive, drive_to, record, record_within};
 pub use spec::{
-    CcdBody, DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Impacts, ImpulseSettings,
-    Integrator, LengthScale, Precision, RapierSettings, engine, engines,
+    CcdBody, DragRule, EngineKind, EngineSpec, ExactSettings, Forces, Handling, Impacts,
+    ImpulseSettings, Integrator, LengthScale, Precision, RAPIER_HANDLING, RapierSettings, Support,
+    engine, engines,
 };
 pub use steps::{DEFAULT_DT, StepGrid};
 

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::format::{code, whole_percent};
+use super::models::other_models;
 use super::studies::CaseStudies;
 use super::template::fill;
 use super::{engineering, limits, percent};
@@ -20,6 +21,8 @@ struct Page<'a> {
     summary: &'a Summary,
     unit: &'static str,
     size: String,
+    /// Who computes another model than the scene's, and which.
+    models: Vec<String>,
     findings: Vec<String>,
     verdicts: Vec<String>,
     /// None for a page that stands alone.
@@ -100,6 +103,7 @@ pub(super) fn case_page(
         summary,
         unit,
         size: with_unit(summary.scale.length, unit),
+        models: other_models(summary),
         findings: findings(summary, shown)
             .iter()
             .map(|(who, what)| format!("**{who}** {what}"))
@@ -148,7 +152,7 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
         let time = engineering(from.time);
         let told = format!(
             "finds the scene undetermined by the model from {time} s on: simultaneous events in \
-             another order end {spread}, and no engine is called wrong for it."
+             another order end {spread}, and no engine is held to it from there."
         );
         Some((voice.voice.clone(), told))
     });
@@ -183,7 +187,7 @@ pub fn findings(summary: &Summary, voices: &[&str]) -> Vec<(String, String)> {
     found
 }
 
-/// Who is wrong, from when and by how much, a sentence each.
+/// Who deviates from the reference, from when and by how much, a sentence each.
 fn verdicts(summary: &Summary) -> Vec<String> {
     let unit = summary.length_unit.symbol();
     let sentence = |verdict: &Verdict| {
@@ -212,10 +216,14 @@ fn verdicts(summary: &Summary) -> Vec<String> {
         } else {
             let off = off.join(", ");
             format!(
-                "{} leaves it: {off}; at most {error}.",
+                "{} deviates from it: {off}; by at most {error}.",
                 code(&verdict.engine)
             )
         };
+        let voice = summary.voice(&verdict.engine);
+        if voice.is_some_and(|voice| voice.another_model.is_some()) {
+            return format!("{stands} It computes another model, so that this is no error.");
+        }
         match &verdict.limit {
             Some(limit) => format!("{stands} {}", limits::sentence(limit, unit)),
             None => stands,
@@ -358,7 +366,7 @@ fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
         position: with_unit(pair.position_divergence_max, unit),
         relative: percent(pair.position_divergence_relative),
         when: format!("{} s", engineering(pair.at_time_s)),
-        body: pair.worst_body.clone(),
+        body: code(&pair.worst_body).to_string(),
         velocity: with_unit(pair.velocity_divergence_rms_max, &speed),
         energy: percent(pair.energy_difference_max),
         momentum: percent(pair.momentum_difference_max),

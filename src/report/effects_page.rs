@@ -10,7 +10,8 @@ use super::format::{aligned, code};
 use super::template::fill;
 use super::{Folder, engineering};
 use crate::error::Result;
-use crate::study::{Change, Effect, EffectRow, EffectStudy, PAIRS_MIN, ROUNDS_MIN};
+use crate::scene::Effect;
+use crate::study::{Change, EffectRow, EffectStudy, PAIRS_MIN, ROUNDS_MIN};
 
 const TEMPLATE: &str = include_str!("../../templates/effects.md");
 

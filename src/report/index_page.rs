@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
+use super::nearer::{nearer, within};
 use super::studies::StudyNote;
 use super::template::{fill, plain_text};
 use super::{Folder, Studies, engineering, percent};
@@ -13,7 +14,7 @@ use crate::case::{Evidence, TRUTH};
 use crate::compare::{RIGHT_WITHIN, Remainder};
 use crate::engine::EngineSpec;
 use crate::error::Result;
-use crate::study::{PairSummary, Summary, VoiceSummary, median};
+use crate::study::{PairSummary, Summary, VoiceSummary};
 
 const TEMPLATE: &str = include_str!("../../templates/index.md");
 
@@ -122,7 +123,11 @@ pub fn index_page(
     let (first, second) = (name(0), name(1));
     let telling = most_telling(summaries, first, second);
     let page = Page {
-        findings: findings(summaries, engines),
+        findings: [
+            nearer(summaries, [first, second], &engineering(dt), studies.hard()),
+            findings(summaries, engines),
+        ]
+        .concat(),
         telling: telling.map(|(summary, pair)| Telling {
             scene: summary.scene.clone(),
             title: summary.title.clone(),
@@ -217,7 +222,7 @@ fn findings(summaries: &[Summary], engines: &[EngineSpec]) -> Vec<String> {
         sentences.extend(parting(summaries, &first.name, &second.name));
     }
     sentences.extend(energy_drifts(summaries, engines));
-    sentences.extend(verdicts(summaries, engines));
+    sentences.extend(within(summaries, engines));
     sentences.extend(remainders(summaries, engines));
     let unfinished: Vec<_> = summaries
         .iter()
@@ -306,36 +311,6 @@ fn energy_drifts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String
     (!worst.is_empty()).then_some(said)
 }
 
-/// How often each engine is right, and its middle error.
-fn verdicts(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
-    let judged = summaries
-        .iter()
-        .filter(|summary| !summary.verdicts.is_empty());
-    let count = judged.count();
-    let of_engine = |spec: &EngineSpec| {
-        let all = summaries.iter().flat_map(|summary| &summary.verdicts);
-        let own: Vec<_> = all.filter(|verdict| verdict.engine == spec.name).collect();
-        let right = own.iter().filter(|verdict| verdict.is_right()).count();
-        let errors: Vec<_> = own.iter().map(|verdict| verdict.error_relative).collect();
-        if errors.is_empty() {
-            return None;
-        }
-        let middle = percent(median(&errors));
-        Some(format!(
-            "`{}` in {right} (median error {middle})",
-            spec.name
-        ))
-    };
-    let rows: Vec<_> = engines.iter().filter_map(of_engine).collect();
-    let said = format!(
-        "In {count} cases the right answer is known. The engines stay within {} of the scene's \
-         size of it, with every impact in order: {}.",
-        whole_percent(RIGHT_WITHIN),
-        rows.join(", ")
-    );
-    (!rows.is_empty()).then_some(said)
-}
-
 /// How often each engine's error is of which kind, where a study of cost has told.
 fn remainders(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
     let of_engine = |spec: &EngineSpec| {
@@ -359,8 +334,7 @@ fn remainders(summaries: &[Summary], engines: &[EngineSpec]) -> Option<String> {
 
 fn row(summary: &Summary, first: &str, second: &str) -> Row {
     let unit = summary.length_unit.symbol();
-    let voice = |name: &str| summary.voices.iter().find(|voice| voice.voice == name);
-    let both = [first, second].map(voice);
+    let both = [first, second].map(|name| summary.voice(name));
     let nothing = || "–".to_owned();
     let energy = |voice: &VoiceSummary| {
         if summary.model_conserves_energy {
@@ -420,6 +394,12 @@ fn reference_row(summary: &Summary, engines: &[EngineSpec]) -> Option<ReferenceR
             return "–".to_owned();
         };
         let error = with_unit(pair.position_divergence_max, unit);
+        if summary
+            .voice(&spec.name)
+            .is_some_and(|own| own.another_model.is_some())
+        {
+            return format!("{error}, *another model*");
+        }
         let mut verdicts = summary.verdicts.iter();
         let own = verdicts.find(|verdict| verdict.engine == spec.name);
         match own.and_then(|verdict| verdict.limit) {

@@ -9,10 +9,13 @@ mod cost;
 #[cfg(feature = "drift")]
 mod drift;
 mod effects_page;
+mod fairness;
 mod files;
 mod format;
 mod index_page;
 mod limits;
+mod models;
+mod nearer;
 mod output;
 mod overhead;
 #[cfg(feature = "plots")]
@@ -29,6 +32,7 @@ pub use cost::{CostReport, claim_cost};
 #[cfg(feature = "drift")]
 pub use drift::{DRIFT_FILES, drift_findings, drift_table, write_drift};
 pub use effects_page::{EFFECTS_FILES, effects_findings, effects_table, write_effects};
+pub use fairness::{handling_table, support_table};
 pub use files::{Folder, Output, Replace, remove_unfinished, write_file};
 pub use format::{engineering, percent};
 pub use index_page::{INDEX_FILES, index_page, write_index};

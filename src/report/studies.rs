@@ -74,6 +74,11 @@ impl Studies {
         (studies, complaints)
     }
 
+    /// What the hard cases have shown, if they were run.
+    pub(super) fn hard(&self) -> Option<&StabilitySummary> {
+        self.stability.as_ref()
+    }
+
     /// A line for each study that was made.
     pub(super) fn notes(&self) -> Vec<StudyNote> {
         let cost = self.cost.iter().map(|study| StudyNote {
@@ -83,7 +88,7 @@ impl Studies {
             origin: Origin::of(&study.made),
         });
         let stability = self.stability.iter().map(|study| StudyNote {
-            title: "Which engine survives what, at which step",
+            title: "Which engine stays within bounds, at which step",
             folder: STABILITY,
             finding: stability::headline(study),
             origin: Origin::of(&study.made),

@@ -2,6 +2,7 @@
 
 mod bounds;
 pub(crate) mod check;
+mod effect;
 mod effects;
 pub(crate) mod fault;
 mod file;
@@ -13,6 +14,7 @@ mod words;
 pub use bounds::BODIES_MAX;
 pub(crate) use bounds::{LOOKS_MAX, TEXT_BYTES_MAX};
 pub use check::SceneWarning;
+pub use effect::Effect;
 pub use effects::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Spring};
 pub use fault::{Fault, FieldPath, PathStep};
 pub(crate) use file::{exactly, parse_checked};

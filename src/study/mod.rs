@@ -20,9 +20,7 @@ mod tracks;
 
 pub use bounds::{BUDGET_MAX, PHASES_MAX, REPETITIONS_MAX, RUNS_MAX};
 pub use breaches::{Breach, Excess, breaches};
-pub use effects::{
-    Change, Difference, Effect, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects,
-};
+pub use effects::{Change, Difference, EffectPrice, EffectRow, EffectStudy, NeverFelt, effects};
 pub use machine::Machine;
 pub use made::Made;
 pub use median::median;

@@ -76,6 +76,9 @@ pub struct VoiceSummary {
     pub warnings: Vec<String>,
     /// What the harness supplies and what differs from the lecture.
     pub notes: Vec<String>,
+    /// In which way the engine computes another model than the scene's, on purpose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub another_model: Option<&'static str>,
     /// The step taken, s.
     pub step_s: Option<f64>,
     /// How it ended.
@@ -204,6 +207,12 @@ impl Summary {
         }
     }
 
+    /// The voice of that name.
+    #[must_use]
+    pub fn voice(&self, name: &str) -> Option<&VoiceSummary> {
+        self.voices.iter().find(|voice| voice.voice == name)
+    }
+
     /// The figures of the pair, in either order.
     #[must_use]
     pub fn pair(&self, a: &str, b: &str) -> Option<&PairSummary> {
@@ -228,6 +237,10 @@ impl VoiceSummary {
                 .as_ref()
                 .map(|spec| notes(scene, spec))
                 .unwrap_or_default(),
+            another_model: voice
+                .spec
+                .as_ref()
+                .and_then(|spec| spec.another_model(scene)),
             engine: voice.spec.clone(),
             step_s: recording.step,
             outcome: recording.outcome,

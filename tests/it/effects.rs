@@ -2,8 +2,9 @@
 
 use carom::case::Library;
 use carom::engine::engine;
+use carom::scene::Effect;
 use carom::scene::{Contact, Drag, Rest, Scene};
-use carom::study::{Change, Effect, EffectStudy, Timing, effects};
+use carom::study::{Change, EffectStudy, Timing, effects};
 
 use crate::command::carom;
 use crate::scenes::{body, oblique, scene};

@@ -22,6 +22,7 @@ mod exact_lies;
 mod example_solvers;
 #[cfg(unix)]
 mod external;
+mod fairness;
 mod faults;
 mod faulty;
 #[cfg(feature = "rapier")]
@@ -38,6 +39,7 @@ mod oracle;
 mod orders;
 mod outputs;
 mod own_truth;
+mod pages;
 mod plain_loop;
 mod plan;
 #[cfg(feature = "rapier")]

@@ -65,7 +65,8 @@ fn the_table_gives_the_engines_bits_on_other_shots_too() {
 /// loop that forgot one could not have the engine's bits.
 #[test]
 fn a_loop_that_forgets_an_effect_is_found_out() {
-    use carom::study::{Change, Effect};
+    use carom::scene::Effect;
+    use carom::study::Change;
     for combination in &COMBINATIONS {
         let scene = (combination.scene)();
         let whole = lecture(&scene, 0.01);

@@ -120,6 +120,17 @@ fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     Ok(certified)
 }
 
+/// How digits are certified, in words.
+fn certification(scene: &Scene) -> &'static str {
+    if has_forces(scene) {
+        "two computations of another order, tolerance and least bounce; the digits in which they \
+         agree, less one"
+    } else {
+        "two more computations from inputs moved by 2^-90, which show how errors grow; the digits \
+         that 64 roundings an event leave, less one"
+    }
+}
+
 /// What the engine does on a scene; nothing else runs.
 ///
 /// # Errors
@@ -153,11 +164,7 @@ pub fn phases(scene: &Scene, settings: ExactSettings) -> Result<Vec<Phase>> {
             "rest",
             "time at which the speed has fallen, stop",
         ),
-        event(
-            settings.certify,
-            "certify",
-            "again in other arithmetic and from moved inputs",
-        ),
+        event(settings.certify, "certify", certification(scene)),
     ];
     Ok(phases.into_iter().flatten().collect())
 }

@@ -1,13 +1,17 @@
 //! What an engine is: a name for plain data, a preset of settings, printed in every report.
 
 mod exact;
+mod handling;
 mod impulse;
 mod rapier;
+mod support;
 mod table;
 
 pub use exact::ExactSettings;
+pub use handling::{Handling, RAPIER_HANDLING};
 pub use impulse::{DragRule, Impacts, ImpulseSettings, Integrator};
 pub use rapier::{CcdBody, Forces, LengthScale, Precision, RapierSettings};
+pub use support::Support;
 pub use table::{engine, engines};
 
 use serde::Serialize;

@@ -98,7 +98,7 @@ pub fn engines() -> Vec<EngineSpec> {
         ),
         row(
             "robust",
-            "survives everything: steps by each effect's limit, contacts solved together",
+            "steps by each effect's limit, contacts solved together; its constants were set on the hard cases",
             rung(
                 Integrator::EnergyMomentum,
                 DragRule::Exponential,

@@ -40,6 +40,7 @@ struct Page<'a> {
 pub(super) struct ScenePart {
     name: String,
     title: String,
+    bodies: usize,
     pictures: bool,
     findings: Vec<String>,
     notes: Vec<String>,
@@ -118,6 +119,7 @@ impl ScenePart {
         Self {
             name: summary.scene.clone(),
             title: summary.title.clone(),
+            bodies: cost.scene.bodies.len(),
             pictures: cfg!(feature = "plots"),
             findings: of_scene(summary),
             notes: cost.notes.clone(),
@@ -156,9 +158,12 @@ fn left(point: Option<&CostPoint>, unit: &str) -> String {
 }
 
 /// How many times as much as the cheapest each engine takes for each accuracy; only engines that
-/// keep one.
+/// keep one, and no row where there were too few rounds for any ratio.
 fn ratios(tags: &[PriceTag], names: &[&str], seed: u64) -> Vec<Row> {
     let compared: Vec<_> = tags.iter().map(|tag| tag.comparisons(seed)).collect();
+    if compared.iter().flatten().all(|row| row.ratio.is_none()) {
+        return Vec::new();
+    }
     let cell = |engine: &str, place: usize| {
         let keeps = |(name, point): &(&str, Option<&CostPoint>)| *name == engine && point.is_some();
         let against = compared[place].iter().find(|row| row.engine == engine);

@@ -42,7 +42,7 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
     ];
     let columns = summary.scores.iter().map(|score| MatrixColumn {
         name: score.engine.clone(),
-        score: format!("{}/{}", score.held, score.run + score.not_run),
+        score: format!("{}/{}", score.held, score.run),
     });
     let row = |(name, _): &(String, String)| MatrixRow {
         name: name.clone(),
@@ -56,7 +56,7 @@ pub(super) fn matrix_png(study: &StabilityStudy, summary: &StabilitySummary) -> 
             .collect(),
     };
     let figure = MatrixFigure {
-        title: "Which engine survives what, at which step".to_owned(),
+        title: "Which engine stays within bounds, at which step".to_owned(),
         subtitle: "hard cases; in each column from the coarsest step (left) to the finest, mostly \
                    0.1, 0.01 and 0.001 s"
             .to_owned(),

@@ -118,11 +118,19 @@ pub(super) fn scores(study: &StabilityStudy, summary: &StabilitySummary) -> Rows
         let own = cells.filter(|judged| judged.cell.engine == engine);
         own.filter_map(|judged| judged.cell.cost_ms).sum()
     };
+    let takes_steps = |engine: &str| {
+        let mut specs = study.engines.iter();
+        specs.any(|spec| spec.name == engine && spec.takes_steps())
+    };
     let row = |score: &crate::study::stability::Score| {
         vec![
             score.engine.clone(),
             format!("{} of {}", score.held, score.run),
-            format!("{} of {}", score.cases_held, summary.cases),
+            if takes_steps(&score.engine) {
+                format!("{} of {}", score.cases_held, summary.cases)
+            } else {
+                "as runs".to_owned()
+            },
             score.not_run.to_string(),
             format!("{} s", engineering(1e-3 * cost(&score.engine))),
         ]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{CostOptions, CostPoint, EngineLimit, PriceTag, SceneCost, Sensitivity};
 use crate::engine::{EngineKind, EngineSpec};
 use crate::error::Result;
-use crate::scene::{LengthUnit, Scene, to_toml};
+use crate::scene::{LengthUnit, Scene, parse, to_toml};
 use crate::study::Made;
 
 /// A study of cost over some scenes.
@@ -124,6 +124,12 @@ impl SceneCostSummary {
             tags: tags.iter().map(|tag| TagSummary::of(cost, tag)).collect(),
             limits: cost.limits(seed),
         })
+    }
+
+    /// How many bodies the scene has, as it was measured.
+    #[must_use]
+    pub fn body_count(&self) -> usize {
+        parse(&self.scene_toml, &self.scene).map_or(0, |scene| scene.bodies.len())
     }
 
     /// Whether this is still the scene that was measured.

@@ -1,4 +1,4 @@
-//! Which engine survives what, at which step: hard cases on every engine, judged by bounds.
+//! Which engine stays within bounds, at which step: hard cases on every engine, judged by bounds.
 
 mod cell;
 mod map;

@@ -1,4 +1,4 @@
-//! The top of the ladder: a scheme that survives every scene, and says where it had to give way.
+//! The top of the ladder: a scheme that goes on through every scene, and says where it had to give way.
 //!
 //! Between impacts bodies move in closed form under drag, dampers and gravity ([`flow`]); forces
 //! between bodies are constant over a step and keep the energy exactly, whatever its length
