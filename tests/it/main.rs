@@ -15,6 +15,7 @@ mod drift;
 mod effects;
 mod exact_flight;
 mod exact_forces;
+mod exact_ties;
 mod example_solvers;
 #[cfg(unix)]
 mod external;
