@@ -7,6 +7,7 @@ mod claim;
 mod effort;
 pub mod flight;
 pub mod forces;
+mod instant;
 mod order;
 mod parting;
 mod settling;

@@ -6,6 +6,7 @@ use super::scalar::{Real, Triple, dot, minus, size};
 use super::search::{Cause, Fresh};
 use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
+use crate::engine::exact::instant::is_endless;
 use crate::engine::exact::order::TieOrder;
 use crate::physics::cholesky::Cholesky;
 use crate::physics::complementarity::{Role, pressing};
@@ -31,12 +32,16 @@ const SAME_ANSWER: f64 = 1e-9;
 pub(super) struct Impact {
     pub(super) touch: Touch,
     pub(super) impulse: f64,
+    /// Speed of approach before it.
+    approach: f64,
 }
 
 /// What an instant leaves behind.
 #[derive(Debug, Default)]
 pub(super) struct Aftermath {
     pub(super) impacts: Vec<Impact>,
+    /// Whether they are the beginning of a series without end.
+    pub(super) endless: bool,
     /// Contacts that press from here on.
     pub(super) held: Vec<Touch>,
     /// Contacts that those keep closed.
@@ -78,8 +83,11 @@ struct Meeting<T> {
 
 impl<T: Real> Meeting<T> {
     /// Below this speed of approach the pair sticks.
+    ///
+    /// A pair without restitution leaves with no speed whatever it came with: its impacts take
+    /// their turn among the others like any.
     fn stick_speed(&self) -> f64 {
-        if self.least_bounce == 0.0 {
+        if self.least_bounce == 0.0 || self.restitution <= T::zero() {
             return 0.0;
         }
         self.least_bounce / self.restitution.to_f64()
@@ -96,6 +104,7 @@ impl<T: Real> Instant<'_, T> {
         let in_order: Vec<usize> = (0..meetings.len()).collect();
         let impacts = self.sweeps(&meetings, &in_order, noise, velocity);
         let mut aftermath = Aftermath {
+            endless: is_endless(impacts.iter().map(|impact| impact.approach)),
             impacts,
             ..Aftermath::default()
         };
@@ -235,6 +244,7 @@ impl<T: Real> Instant<'_, T> {
                 impacts.push(Impact {
                     touch: meeting.touch,
                     impulse: (push * meeting.reach).to_f64(),
+                    approach,
                 });
                 if impacts.len() == IMPACTS_MAX {
                     return impacts;
@@ -274,6 +284,7 @@ impl<T: Real> Instant<'_, T> {
                 aftermath.impacts.push(Impact {
                     touch: meeting.touch,
                     impulse: (push * meeting.reach).to_f64(),
+                    approach: speed,
                 });
             }
         }

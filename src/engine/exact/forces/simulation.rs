@@ -247,6 +247,7 @@ impl<T: Real> ForcesSimulation<T> {
         };
         let Aftermath {
             impacts,
+            endless,
             held,
             idle,
             fresh,
@@ -266,12 +267,16 @@ impl<T: Real> ForcesSimulation<T> {
             self.is_unsettled |= in_cluster;
         }
         if let Some(log) = log {
+            let first = log.events().len();
             for impact in impacts {
                 log.push(Event {
                     time,
                     kind: impact.touch.event(),
                     impulse: impact.impulse,
                 });
+            }
+            if endless {
+                log.sum_from(first);
             }
         }
         self.held = held;
