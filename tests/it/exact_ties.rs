@@ -3,18 +3,33 @@
 //! Their right values come from a computation in multiple precision that shares nothing with the
 //! engines. Each case says what used to happen in the comment beside it.
 
+use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use carom::case::{Case, Library};
 use carom::engine::{DEFAULT_DT, engine, record};
-use carom::recording::{Digits, Event, Recording, Undetermined};
-use carom::scene::Scene;
+use carom::recording::{
+    Digits, Event, Recording, Undetermined, read_events, read_trajectory_start,
+};
+use carom::scene::{Scene, parse};
 
-/// A case of `tests/faults`.
-fn case(name: &str) -> Case {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults");
-    Library::Folder(folder).case(name).unwrap()
+/// A case of `tests/faults`: its scene, and its truth as far as there is one.
+fn case(name: &str) -> (Scene, Option<Recording>) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/faults")
+        .join(name);
+    let scene = parse(
+        &fs::read_to_string(folder.join("scene.toml")).unwrap(),
+        name,
+    )
+    .unwrap();
+    let truth = fs::File::open(folder.join("truth.csv")).ok().map(|file| {
+        let mut truth = read_trajectory_start("truth", &scene, file, name).unwrap();
+        let events = fs::File::open(folder.join("events.csv")).unwrap();
+        truth.events = read_events(&scene, events, name).unwrap();
+        truth
+    });
+    (scene, truth)
 }
 
 pub fn exact(scene: &Scene) -> Recording {
@@ -118,9 +133,9 @@ const CASES: [(&str, Answer); 9] = [
 ];
 
 fn assert_answer(name: &str, expected: &Answer) {
-    let case = case(name);
+    let (scene, truth) = case(name);
     let start = Instant::now();
-    let recording = exact(&case.scene);
+    let recording = exact(&scene);
     let found = &recording.undetermined;
     println!(
         "{name}: {:?}, {:.1} s, undetermined {found:?}, digits at the end {:?}",
@@ -143,12 +158,12 @@ fn assert_answer(name: &str, expected: &Answer) {
         }
         (Answer::Single, Some(_)) | (Answer::None(..), None) => panic!("{name}: {found:?}"),
     }
-    let Some(truth) = &case.truth else { return };
-    assert_eq!(lie(&case.scene, &recording, truth), None, "{name}");
+    let Some(truth) = &truth else { return };
+    assert_eq!(lie(&scene, &recording, truth), None, "{name}");
     let until = found
         .as_ref()
         .map_or(f64::INFINITY, |found| found.time - 1e-9);
-    let until = until.min(case.scene.sample_time(truth.sample_count() - 1));
+    let until = until.min(scene.sample_time(truth.sample_count() - 1));
     assert_impacts(name, &impacts(&recording, until), &impacts(truth, until));
 }
 
@@ -177,7 +192,7 @@ holds! {
 /// Used to be certain in three orders of the bodies, and undetermined in the other three.
 #[test]
 fn a_near_tie_is_judged_alike_for_every_order_of_the_bodies() {
-    let scene = case("near-tie-said-or-not-by-body-order").scene;
+    let scene = case("near-tie-said-or-not-by-body-order").0;
     holds("near-tie-said-or-not-by-body-order");
     let mut verdicts = Vec::new();
     for order in [
@@ -203,7 +218,7 @@ fn a_near_tie_is_judged_alike_for_every_order_of_the_bodies() {
 #[test]
 fn a_tie_is_seen_at_every_offset() {
     for step in 0..20 {
-        let mut scene = case("two-on-one-shifted").scene;
+        let mut scene = case("two-on-one-shifted").0;
         for body in &mut scene.bodies {
             body.position[0] += 0.1 * f64::from(step) - 0.2;
         }

@@ -14,11 +14,12 @@ mod plan;
 mod plane;
 mod queue;
 mod runaway;
-
 mod simulation;
+mod ties;
 mod turn;
+mod watch;
 mod world;
 
 pub use certify::certified;
 
-pub use simulation::{FlightSimulation, Simultaneous};
+pub use simulation::FlightSimulation;
