@@ -8,9 +8,11 @@ mod effort;
 pub mod flight;
 pub mod forces;
 mod instant;
+mod nudge;
 mod order;
 mod parting;
 mod settling;
+mod ties;
 mod wide;
 
 pub use crate::physics::real::Real;

@@ -1,13 +1,14 @@
 //! How many digits a run vouches for, and where the model itself has no single answer.
 
+use super::judge::Judge;
 use super::law::State;
 use super::simulation::FlightSimulation;
-use super::ties::{Judge, Tie, ties};
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
+use crate::engine::exact::ties::{COPIES, Measure, Tie, ties};
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
 use crate::physics::Vector3;
@@ -24,11 +25,8 @@ const ROUNDINGS_AN_EVENT: f64 = 64.0;
 /// So many samples in a row may each fall on an impact.
 const MOMENT: usize = 8;
 
-/// Copies from moved inputs that go along with a run.
-const COPIES: [u64; 2] = [1, 2];
-
-/// Further ones that ties are measured on, where there may be any.
-const COPIES_OF_TIES: [u64; 4] = [3, 4, 5, 6];
+/// So many copies go along with a run; ties are measured on more of them, where there may be any.
+const ALONG: usize = 2;
 
 /// Two copies may show less of what is open than six by this factor, but for one in a thousand.
 const DOUBT: f64 = 1e3;
@@ -38,7 +36,7 @@ const DOUBT: f64 = 1e3;
 /// Method: the run is made in double-doubles; two more go along with it, sample by sample, from
 /// inputs moved by 2^-90. How far these part is how errors grow; the claim leaves room for 64
 /// roundings an event and a factor of 10. Where events nearly coincide, their other orders are
-/// compared ([`ties`](super::ties)).
+/// compared ([`ties`](crate::engine::exact::ties)).
 /// Units: `operations` bounds each run, in elementary operations.
 ///
 /// # Errors
@@ -50,7 +48,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         let copy = FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed)?;
         Ok(copy.limited(operations).watched())
     };
-    let mut copies = COPIES.into_iter().map(copy).collect::<Result<Vec<_>>>()?;
+    let mut copies = COPIES.take(ALONG).map(copy).collect::<Result<Vec<_>>>()?;
     let mut recording = Recording::at_start("exact", scene);
     let mut states = initial_states(scene);
     let mut growth = vec![Parting::default()];
@@ -99,26 +97,26 @@ fn measured_ties(
     run: &FlightSimulation<Wide>,
     mut copies: Vec<FlightSimulation<Wide>>,
     copy: impl Fn(u64) -> Result<FlightSimulation<Wide>>,
-) -> Result<Vec<Tie>> {
-    let Some(noted) = run.watch.as_deref() else {
+) -> Result<Vec<Tie<Wide>>> {
+    let Some(watch) = run.watch.as_deref() else {
         return Ok(Vec::new());
     };
-    let watches = |copies: &[FlightSimulation<Wide>]| -> Vec<_> {
-        copies
-            .iter()
-            .filter_map(|copy| copy.watch.clone())
-            .collect()
-    };
     let measured = |copies: &[FlightSimulation<Wide>], doubt: f64| {
-        let watches = watches(copies);
-        let watches: Vec<_> = watches.iter().map(|watch| &**watch).collect();
-        ties(noted, &watches, (NUDGE, doubt))
+        let watches = copies.iter().filter_map(|copy| copy.watch.as_deref());
+        let noted: Vec<_> = watches.map(|watch| &watch.noted).collect();
+        let (share, roundings) = (NUDGE, 1.0);
+        let measure = Measure {
+            share,
+            roundings,
+            doubt,
+        };
+        ties(&watch.noted, &noted, measure)
     };
     let doubtful = measured(&copies, DOUBT);
     let Some(last) = doubtful.iter().map(Tie::end).reduce(Real::larger) else {
         return Ok(Vec::new());
     };
-    for seed in COPIES_OF_TIES {
+    for seed in COPIES.skip(ALONG) {
         let mut copy = copy(seed)?;
         // One that ends sooner has noted what it could.
         copy.run_to(last, &mut None);

@@ -7,6 +7,7 @@
 mod certify;
 mod encounter;
 mod grid;
+mod judge;
 mod law;
 mod model;
 mod perturb;
@@ -15,7 +16,6 @@ mod plane;
 mod queue;
 mod runaway;
 mod simulation;
-mod ties;
 mod turn;
 mod watch;
 mod world;

@@ -93,8 +93,7 @@ impl<R: Real> FlightSimulation<R> {
         accept(scene)?;
         let mut model = Model::<R>::of(scene);
         let mut states = start(scene);
-        let names: Vec<_> = scene.bodies.iter().map(|body| &*body.name).collect();
-        super::perturb::perturb(&mut model, &mut states, &names, (size, seed));
+        super::perturb::perturb(&mut model, &mut states, scene, (size, seed));
         Ok(Self::with(model, TieOrder::Rule, &states))
     }
 

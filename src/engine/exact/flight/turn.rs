@@ -170,9 +170,9 @@ impl<R: Real> FlightSimulation<R> {
         let (Some(watch), Some(foreseen)) = (&mut self.watch, foreseen) else {
             return;
         };
-        watch.note(self.world.now, &foreseen);
+        watch.noted.note(self.world.now, &foreseen);
         let set_off = watch.foresee(&self.world, kind);
-        watch.note(self.world.now, &set_off);
+        watch.noted.note(self.world.now, &set_off);
     }
 
     fn note(&mut self, kind: EventKind, impulse: R, log: &mut Option<&mut EventLog>) {

@@ -3,11 +3,13 @@
 use super::accuracy::Accuracy;
 use super::scalar::Wide;
 use super::simulation::{ForcesSimulation, Undetermined};
+use super::ties::Judge;
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
+use crate::engine::exact::ties::SAME;
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
 use crate::recording::{
@@ -90,7 +92,15 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         sample += 1;
     }
     recording.work = published.work();
-    let undetermined = match published.undetermined() {
+    let scale = Scale::of(&recording);
+    let claims = |partings: &[Parting]| -> Vec<_> {
+        let claim = |parting: &Parting| {
+            let errors = parting.scaled(SAFETY);
+            scale.digits(errors.position, errors.velocity)
+        };
+        partings.iter().map(claim).collect()
+    };
+    let mut undetermined = match published.undetermined() {
         Some(from) => Some(recording::Undetermined {
             time: from.time,
             bodies: from.bodies.to_vec(),
@@ -98,13 +108,36 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         }),
         None => None,
     };
-    let scale = Scale::of(&recording);
-    let digits = |parting: &Parting| {
-        let errors = parting.scaled(SAFETY);
-        scale.digits(errors.position, errors.velocity)
+    if let Some(from) = &undetermined
+        && let Some(spread) = from.spread.filter(|it| *it <= SAME * scale.diagonal)
+    {
+        // One answer, with as many digits as the orders share.
+        for (sample, parting) in partings.iter_mut().enumerate() {
+            if scene.sample_time(sample) >= from.time {
+                parting.position += spread;
+            }
+        }
+        undetermined = None;
+    }
+    let digits = claims(&partings);
+    let certain = |sample: &usize| {
+        digits[*sample].position >= COMPARABLE_DIGITS
+            && !undetermined
+                .as_ref()
+                .is_some_and(|from| scene.sample_time(*sample) >= from.time)
     };
+    let judge = Judge {
+        scene,
+        recording: &recording,
+        scale: &scale,
+        known: (0..digits.len()).take_while(certain).count(),
+        operations,
+    };
+    if let Some(found) = judge.judge()? {
+        undetermined = Some(found);
+    }
     Ok(Certified {
-        digits: partings.iter().map(digits).collect(),
+        digits,
         recording,
         undetermined,
     })

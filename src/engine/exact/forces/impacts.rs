@@ -8,6 +8,7 @@ use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
 use crate::engine::exact::instant::is_endless;
 use crate::engine::exact::order::TieOrder;
+use crate::engine::exact::ties::Foreseen;
 use crate::physics::cholesky::Cholesky;
 use crate::physics::complementarity::{Role, pressing};
 
@@ -67,6 +68,8 @@ pub(super) struct Instant<'a, T> {
     /// The contacts that pressed until now.
     pub(super) held: &'a [Touch],
     pub(super) trigger: Option<(Touch, Cause)>,
+    /// Gaps that close within this time, at most, count as closed, s.
+    pub(super) within: f64,
 }
 
 /// Touching surfaces with what impacts between them need.
@@ -95,6 +98,26 @@ impl<T: Real> Meeting<T> {
 }
 
 impl<T: Real> Instant<'_, T> {
+    /// What the bodies of a touch are about to meet, and when, if they go on at these velocities.
+    pub(super) fn foresee(
+        &self,
+        of: Touch,
+        velocity: &[Triple<T>],
+        within: f64,
+    ) -> Vec<Foreseen<T>> {
+        let fastest = velocity.iter().map(size).fold(0.0, f64::max);
+        let noise = 64.0 * T::ROUNDING * fastest;
+        let shares = |touch: &Touch| touch.bodies().iter().any(|body| of.bodies().contains(body));
+        let foreseen = self.surfaces.all().filter(shares).filter_map(|touch| {
+            let reach = T::from_f64(self.surfaces.reach(touch));
+            let approach = -arms(touch, self.position).rate(velocity) / reach;
+            let gap = self.surfaces.gap(touch, self.position);
+            let near = approach.to_f64() > noise && gap.to_f64() <= within * approach.to_f64();
+            near.then(|| (touch.event(), gap / approach))
+        });
+        foreseen.collect()
+    }
+
     /// Changes the velocities by every impact of this instant.
     pub(super) fn resolve(&self, velocity: &mut [Triple<T>]) -> Aftermath {
         let meetings = self.meetings(velocity);
@@ -180,6 +203,7 @@ impl<T: Real> Instant<'_, T> {
             self.trigger.is_some_and(|(trigger, _)| trigger == *touch)
                 || self.held.contains(touch)
                 || self.closed(*touch)
+                || self.falls_together(*touch, velocity)
         });
         let meeting = |touch: Touch| {
             let arms = arms(touch, self.position);
@@ -216,6 +240,17 @@ impl<T: Real> Instant<'_, T> {
         let gap = self.surfaces.gap(touch, self.position).to_f64();
         let least_bounce = self.bounce_height * self.surfaces.reach(touch);
         gap <= closed_below::<T>(far[0].max(far[1])).max(least_bounce)
+    }
+
+    /// Whether the gap may close within the time that counts as this instant.
+    fn falls_together(&self, touch: Touch, velocity: &[Triple<T>]) -> bool {
+        let speed: f64 = touch
+            .bodies()
+            .iter()
+            .map(|body| size(&velocity[*body]))
+            .sum();
+        let gap = self.surfaces.gap(touch, self.position).to_f64();
+        self.within > 0.0 && gap <= self.within * speed
     }
 
     /// Impacts one after the other, sweep by sweep, until nothing approaches that does not stick.

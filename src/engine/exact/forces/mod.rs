@@ -27,6 +27,7 @@ mod search;
 mod series;
 mod simulation;
 mod span;
+mod ties;
 mod touch;
 mod watchdog;
 
