@@ -87,51 +87,6 @@ pub(super) fn directions(scene: &Scene, seed: u64) -> Scene {
     moved
 }
 
-/// A scene whose numbers are moved by a relative share, in doubles.
-pub(super) fn moved(scene: &Scene, share: f64, seed: u64) -> Scene {
-    let directions = directions(scene, seed);
-    let mut moved = scene.clone();
-    let by = |own: &mut f64, direction: f64| *own += share * direction;
-    let by_three = |own: &mut [f64; 3], direction: [f64; 3]| {
-        own.iter_mut()
-            .zip(direction)
-            .for_each(|(own, direction)| by(own, direction));
-    };
-    for (own, direction) in moved.bodies.iter_mut().zip(&directions.bodies) {
-        by_three(&mut own.position, direction.position);
-        by_three(&mut own.velocity, direction.velocity);
-        by(&mut own.mass, direction.mass);
-        by(&mut own.radius, direction.radius);
-    }
-    let (own, of) = (&mut moved.effects, &directions.effects);
-    if let (Some(own), Some(of)) = (&mut own.contact, &of.contact) {
-        by(&mut own.restitution, of.restitution);
-    }
-    if let (Some(own), Some(of)) = (&mut own.cushions, &of.cushions) {
-        by(&mut own.restitution, of.restitution);
-        by(&mut own.half_width, of.half_width);
-        by(&mut own.half_length, of.half_length);
-        let heights = own.half_height.iter_mut().zip(of.half_height);
-        heights.for_each(|(own, of)| by(own, of));
-    }
-    if let (Some(own), Some(of)) = (&mut own.drag, &of.drag) {
-        by(&mut own.coefficient, of.coefficient);
-    }
-    if let (Some(own), Some(of)) = (&mut own.attraction, &of.attraction) {
-        by(&mut own.constant, of.constant);
-        by(&mut own.softening, of.softening);
-    }
-    if let (Some(own), Some(of)) = (&mut own.gravity, &of.gravity) {
-        by_three(&mut own.acceleration, of.acceleration);
-    }
-    for (own, of) in own.springs.iter_mut().zip(&of.springs) {
-        by(&mut own.stiffness, of.stiffness);
-        by(&mut own.rest_length, of.rest_length);
-        by(&mut own.damping, of.damping);
-    }
-    moved
-}
-
 /// Three directions at right angles that turn with the scene.
 fn frame(scene: &Scene, seed: u64) -> [Vector3; 3] {
     let places = scene.bodies.iter().map(|body| Vector3::from(body.position));

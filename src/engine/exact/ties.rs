@@ -22,6 +22,9 @@ const TIES_MAX: usize = 256;
 /// Other orders that are tried at one tie of more than two events, beside the rule and the reverse.
 const DRAWN: u64 = 7;
 
+/// Roundings of a time by which events of one instant may be apart as they are computed.
+const ROUNDINGS: f64 = 1e3;
+
 /// Other orders that are followed to the end of a scene.
 pub(super) const CONTINUATIONS_MAX: u32 = 24;
 
@@ -38,7 +41,7 @@ pub(super) type Foreseen<R> = (EventKind, R);
 /// Two events that share a body and nearly an instant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near<R> {
-    /// When, s.
+    /// The first of them, s.
     pub time: R,
     /// Both, the lower one first.
     pub kinds: [EventKind; 2],
@@ -72,6 +75,39 @@ impl<R: Real> Noted<R> {
         self.list.last().map(|near| near.time.to_f64())
     }
 
+    /// Those up to a time, s.
+    pub fn up_to(&self, time: f64) -> Self {
+        self.filtered(|near| near.time.to_f64() <= time)
+    }
+
+    /// Those whose lag is no larger than `doubt` times what doubles have made of it.
+    pub fn unclear(&self, doubles: &Noted<f64>, doubt: f64) -> Self {
+        let in_doubles = |near: &Near<R>| Near {
+            time: near.time.to_f64(),
+            kinds: near.kinds,
+            lag: near.lag.to_f64(),
+        };
+        self.filtered(|near| {
+            let near = in_doubles(near);
+            let rounded = f64::EPSILON * near.time;
+            let off = |lag: f64| (lag - near.lag).abs().max(rounded);
+            let lag = doubles.lag_of(&near);
+            lag.is_none_or(|lag| near.lag.abs() <= doubt * off(lag))
+        })
+    }
+
+    fn filtered(&self, keep: impl Fn(&Near<R>) -> bool) -> Self {
+        Self {
+            within: self.within,
+            list: self
+                .list
+                .iter()
+                .copied()
+                .filter(|near| keep(near))
+                .collect(),
+        }
+    }
+
     /// Notes the pairs of foreseen events that share a body.
     pub fn note(&mut self, now: R, foreseen: &[Foreseen<R>]) {
         for (place, one) in foreseen.iter().enumerate() {
@@ -83,7 +119,8 @@ impl<R: Real> Noted<R> {
                     continue;
                 }
                 if self.list.len() < KEPT {
-                    let (time, lag) = (now, second.1 - first.1);
+                    let sooner = if second.1 < first.1 { second } else { first };
+                    let (time, lag) = (now + sooner.1, second.1 - first.1);
                     self.list.push(Near { time, kinds, lag });
                 }
             }
@@ -123,8 +160,6 @@ pub(super) struct Tie<R> {
     pub from: R,
     /// The last of them, s.
     pub to: R,
-    /// What inputs leave open in the time between them, s.
-    pub width: R,
     kinds: Vec<EventKind>,
     /// The bodies that two of them share.
     pub bodies: Vec<usize>,
@@ -142,7 +177,8 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// What is open in the time between two events; none where that cannot be told.
+    /// What is open in the time between two events, at most what is noted; none where that cannot
+    /// be told.
     ///
     /// The largest change over the copies. A copy adds the parts of some twenty inputs with random
     /// signs: rarely less than a tenth of the sum of their sizes, which the factor makes up for.
@@ -152,28 +188,24 @@ impl Measure {
             .map(|lag| (lag - near.lag).to_f64().abs())
             .reduce(f64::max)?;
         let half_ulp = self.roundings * 0.5 * f64::EPSILON;
-        let width = SAFETY * moved * (half_ulp / self.share);
-        (width < run.within).then_some((self.doubt * width).min(run.within))
+        let width = self.doubt * SAFETY * moved * (half_ulp / self.share);
+        Some(width.min(run.within))
     }
 }
 
 /// The near coincidences that the inputs may turn round, those at one instant together.
 pub(super) fn ties<R: Real>(run: &Noted<R>, copies: &[&Noted<R>], measure: Measure) -> Vec<Tie<R>> {
+    let open = |near: &&Near<R>| {
+        let width = measure.width(near, run, copies);
+        width.is_some_and(|width| near.lag.to_f64().abs() <= width)
+    };
+    let mut open: Vec<_> = run.list.iter().filter(open).collect();
+    open.sort_by(|one, other| one.time.to_f64().total_cmp(&other.time.to_f64()));
     let mut ties: Vec<Tie<R>> = Vec::new();
-    for near in &run.list {
-        let Some(width) = measure.width(near, run, copies) else {
-            continue;
-        };
-        if near.lag.to_f64().abs() > width {
-            continue;
-        }
-        let width = R::from_f64(width);
-        let same = ties
-            .last_mut()
-            .filter(|tie| near.time <= tie.to + tie.width.larger(width));
-        match same {
-            Some(tie) => tie.join(near, width),
-            None => ties.push(Tie::of(near, width)),
+    for near in open {
+        match ties.last_mut().filter(|tie| tie.holds(near)) {
+            Some(tie) => tie.join(near),
+            None => ties.push(Tie::of(near)),
         }
     }
     ties.truncate(TIES_MAX);
@@ -181,21 +213,25 @@ pub(super) fn ties<R: Real>(run: &Noted<R>, copies: &[&Noted<R>], measure: Measu
 }
 
 impl<R: Real> Tie<R> {
-    fn of(near: &Near<R>, width: R) -> Self {
+    fn of(near: &Near<R>) -> Self {
         let mut tie = Self {
             from: near.time,
             to: near.time,
-            width,
             kinds: Vec::new(),
             bodies: Vec::new(),
         };
-        tie.join(near, width);
+        tie.join(near);
         tie
     }
 
-    fn join(&mut self, near: &Near<R>, width: R) {
+    /// Whether these two events belong to it as well: they overlap.
+    fn holds(&self, near: &Near<R>) -> bool {
+        let room = self.to.abs().times(ROUNDINGS * R::EPSILON);
+        near.time <= self.to + room
+    }
+
+    fn join(&mut self, near: &Near<R>) {
         self.to = self.to.larger(near.time + near.lag.abs());
-        self.width = self.width.larger(width);
         for kind in near.kinds {
             if !self.kinds.contains(&kind) {
                 self.kinds.push(kind);
@@ -209,14 +245,9 @@ impl<R: Real> Tie<R> {
         }
     }
 
-    /// Events within this time of each other stand for one instant, s.
-    pub fn within(&self) -> R {
-        self.to - self.from + self.width
-    }
-
-    /// When it is over.
-    pub fn end(&self) -> R {
-        self.to + self.width
+    /// From the first to the last of its events, s.
+    pub fn length(&self) -> R {
+        self.to - self.from
     }
 
     /// Orders to try beside that of the times as computed: the rule's, the reverse, others.

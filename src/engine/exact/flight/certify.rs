@@ -113,13 +113,14 @@ fn measured_ties(
         ties(&watch.noted, &noted, measure)
     };
     let doubtful = measured(&copies, DOUBT);
-    let Some(last) = doubtful.iter().map(Tie::end).reduce(Real::larger) else {
+    let Some(last) = doubtful.iter().map(|tie| tie.to).reduce(Real::larger) else {
         return Ok(Vec::new());
     };
+    let within = Wide::from_f64(watch.noted.within());
     for seed in COPIES.skip(ALONG) {
         let mut copy = copy(seed)?;
         // One that ends sooner has noted what it could.
-        copy.run_to(last, &mut None);
+        copy.run_to(last + within, &mut None);
         copies.push(copy);
     }
     Ok(measured(&copies, 1.0))

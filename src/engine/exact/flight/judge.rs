@@ -59,10 +59,14 @@ impl Judge<'_> {
         judgement
     }
 
+    /// Events of a tie are within this time of each other as they are computed.
+    fn within(&self, tie: &Tie<Wide>) -> Wide {
+        tie.length() + Wide::from_f64(1e3 * Wide::EPSILON * self.scene.duration)
+    }
+
     /// Time before and after a tie in which nothing of it happens.
     fn room(&self, tie: &Tie<Wide>) -> Wide {
-        let least = Wide::from_f64(1e3 * Wide::EPSILON * self.scene.duration);
-        tie.width.times(4.0).larger(least)
+        self.within(tie).times(4.0)
     }
 
     /// How far other orders of a tie lead away, where that makes them other answers.
@@ -81,7 +85,7 @@ impl Judge<'_> {
         let (mut spread, mut decides) = (0.0_f64, false);
         for order in tie.orders() {
             let mut other = run.clone();
-            other.take_together(tie.within(), order);
+            other.take_together(self.within(tie), order);
             if other.run_to(end, &mut None).is_some() {
                 continue;
             }
@@ -123,7 +127,7 @@ impl Judge<'_> {
         let mass = scene.bodies.iter().fold(f64::INFINITY, light);
         let drag = scene.effects.drag.map_or(0.0, |drag| drag.coefficient) / mass;
         let speed = self.scale.speed;
-        let time = tie.within().to_f64();
+        let time = self.within(tie).to_f64();
         MOVED * (time * (speed * speed / radius + falls + drag * speed) + Wide::EPSILON * speed)
     }
 

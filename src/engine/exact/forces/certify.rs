@@ -9,7 +9,7 @@ use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
-use crate::engine::exact::ties::SAME;
+use crate::engine::exact::ties::{Noted, SAME};
 use crate::error::Result;
 use crate::physics::{BodyState, Vector3};
 use crate::recording::{
@@ -43,7 +43,8 @@ const SETTLING_OPERATIONS: f64 = 1e9;
 /// # Errors
 /// As [`ForcesSimulation::new`].
 pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
-    let mut published = Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?;
+    let mut published =
+        Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?.watched(scene);
     let again = [Accuracy::WIDE_AGAIN, Accuracy::FAST_AGAIN];
     let mut witness = Some(Voice::new(scene, again, operations)?);
     let mut recording = Recording::at_start(VOICE, scene);
@@ -130,6 +131,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         scene,
         recording: &recording,
         scale: &scale,
+        noted: published.noted(),
         known: (0..digits.len()).take_while(certain).count(),
         operations,
     };
@@ -182,6 +184,8 @@ struct Voice {
     before: Work,
     undetermined: Option<Undetermined>,
     unsettled: bool,
+    /// What nearly fell on one instant while it was wide.
+    noted: Option<Noted<Wide>>,
 }
 
 impl Voice {
@@ -195,7 +199,21 @@ impl Voice {
             before: Work::default(),
             undetermined: None,
             unsettled: false,
+            noted: None,
         })
+    }
+
+    /// The same with an eye on impacts that nearly fall on one instant.
+    fn watched(mut self, scene: &Scene) -> Self {
+        self.noted = Some(Noted::new(scene.duration));
+        self.wide = self.wide.map(ForcesSimulation::watched);
+        self
+    }
+
+    fn noted(&self) -> Noted<Wide> {
+        let now = self.wide.as_ref().and_then(|wide| wide.watch.as_deref());
+        let none = || Noted::new(0.0);
+        now.or(self.noted.as_ref()).cloned().unwrap_or_else(none)
     }
 
     fn is_wide(&self) -> bool {
@@ -249,6 +267,9 @@ impl Voice {
             self.undetermined = wide.undetermined().filter(kept);
             self.unsettled = wide.is_unsettled();
             self.before = wide.work();
+            if let Some(watch) = &wide.watch {
+                self.noted = Some(watch.up_to(scene.sample_time(sample)));
+            }
             self.double.set_state(sample, states);
         }
     }

@@ -21,6 +21,7 @@ mod certify;
 mod held;
 mod impacts;
 mod law;
+mod perturb;
 mod refuse;
 mod scalar;
 mod search;

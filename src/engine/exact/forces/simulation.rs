@@ -115,11 +115,6 @@ impl<T: Real> ForcesSimulation<T> {
     /// forces, and for bodies that overlap at the start; what is wrong with the scene.
     pub fn new(scene: &Scene, accuracy: Accuracy) -> Result<Self> {
         check(scene)?;
-        Ok(Self::unchecked(scene, accuracy))
-    }
-
-    /// The same of a scene that may be off a checked one by a hair.
-    pub(super) fn unchecked(scene: &Scene, accuracy: Accuracy) -> Self {
         let mut simulation = Self {
             law: Law::of(scene),
             surfaces: Surfaces::of(scene),
@@ -152,7 +147,7 @@ impl<T: Real> ForcesSimulation<T> {
             together: None,
         };
         simulation.set_state(0, &initial_states(scene));
-        simulation
+        Ok(simulation)
     }
 
     /// The same with an eye on impacts that nearly fall on one instant.

@@ -1,32 +1,40 @@
 //! Whether the order of the impacts of a tie decides the answer, among forces.
 //!
-//! All of it in doubles, which are fast: how inputs move the impacts is seen on moves that are
-//! large beside their rounding, and other orders part by more than rounding where they matter.
+//! How inputs move the impacts is measured in double-doubles, where anything is near enough to a
+//! tie; what other orders lead to in doubles, as they part by more than rounding where they
+//! matter.
 
 use super::accuracy::Accuracy;
+use super::scalar::{Real, Wide};
 use super::simulation::{ForcesSimulation, Together};
 use crate::engine::Simulation;
 use crate::engine::exact::claim::Scale;
-use crate::engine::exact::nudge::moved;
 use crate::engine::exact::parting::Parting;
-use crate::engine::exact::ties::{CONTINUATIONS_MAX, COPIES, Measure, SAME, Tie, ties};
+use crate::engine::exact::ties::{CONTINUATIONS_MAX, COPIES, Measure, Noted, SAME, Tie, ties};
 use crate::error::Result;
 use crate::physics::BodyState;
 use crate::recording::{Recording, Undetermined};
 use crate::scene::Scene;
 
-/// Inputs are moved by this share: far above rounding, far below what bends a path.
-const NUDGE: f64 = 1.455_191_522_836_685e-11; // 2^-36
+/// Inputs are moved by this share: hundreds of times the truncation of a step.
+const NUDGE: f64 = 8.470_329_472_543_003e-22; // 2^-70
 
-/// Half ulps by which what is computed in doubles may be off beside its inputs.
+/// A run in doubles may show less of what half an ulp of the inputs leaves open by this factor,
+/// but for one in a thousand.
+const DOUBT: f64 = 1e3;
+
+/// Half ulps by which times in doubles may be off beside.
 const ROUNDINGS: f64 = 64.0;
 
 /// Velocities after a tie that differ by so many times what moving the impacts by the width of
 /// the tie does, differ by the order.
 const MOVED: f64 = 64.0;
 
-/// Operations that each run which looks for ties may take: some tenths of a second.
+/// Operations that each run in doubles may take: some tenths of a second.
 const OPERATIONS: u64 = 200_000_000;
+
+/// Operations that each copy in double-doubles may take.
+const COPY_OPERATIONS: u64 = 500_000_000;
 
 /// A recorded scene whose ties are judged.
 pub(super) struct Judge<'a> {
@@ -35,6 +43,8 @@ pub(super) struct Judge<'a> {
     pub scale: &'a Scale,
     /// Samples that are certain so far.
     pub known: usize,
+    /// What nearly fell on one instant.
+    pub noted: Noted<Wide>,
     pub operations: u64,
 }
 
@@ -50,40 +60,50 @@ impl Judge<'_> {
         Ok(None)
     }
 
-    fn ties(&self) -> Result<Vec<Tie<f64>>> {
-        let operations = OPERATIONS.min(self.operations);
-        let last = self.scene.sample_time(self.known.saturating_sub(1));
-        let mut run = ForcesSimulation::<f64>::new(self.scene, Accuracy::FAST)?
-            .limited(operations)
-            .watched();
-        run.reaches(last);
-        let Some((noted, last)) = run.watch.and_then(|noted| {
-            let last = noted.last()?;
-            Some((noted, last))
-        }) else {
+    fn ties(&self) -> Result<Vec<Tie<Wide>>> {
+        let known = self.scene.sample_time(self.known.saturating_sub(1));
+        let noted = self.noted.up_to(known);
+        let noted = self.worth_a_look(noted)?;
+        let Some(last) = noted.last() else {
             return Ok(Vec::new());
         };
-        let copies = COPIES.filter_map(|seed| {
-            let scene = moved(self.scene, NUDGE, seed);
-            let copy = ForcesSimulation::<f64>::unchecked(&scene, Accuracy::FAST);
-            let mut copy = copy.limited(operations).watched();
+        let mut copies = Vec::new();
+        for seed in COPIES {
+            let copy = ForcesSimulation::<Wide>::new(self.scene, Accuracy::WIDE)?;
+            let copy = copy.perturbed(self.scene, (NUDGE, seed));
+            let mut copy = copy.limited(COPY_OPERATIONS).patient().watched();
             copy.reaches(last + noted.within());
-            copy.watch
-        });
-        let copies: Vec<_> = copies.collect();
+            copies.extend(copy.watch);
+        }
         let copies: Vec<_> = copies.iter().map(|copy| &**copy).collect();
         let measure = Measure {
             share: NUDGE,
-            roundings: ROUNDINGS,
+            roundings: 1.0,
             doubt: 1.0,
         };
         Ok(ties(&noted, &copies, measure))
     }
 
+    /// Those of the near coincidences that a run in doubles does not tell apart clearly.
+    fn worth_a_look(&self, noted: Noted<Wide>) -> Result<Noted<Wide>> {
+        let Some(last) = noted.last() else {
+            return Ok(noted);
+        };
+        let run = ForcesSimulation::<f64>::new(self.scene, Accuracy::FAST)?;
+        let mut run = run.limited(OPERATIONS.min(self.operations)).watched();
+        run.reaches(last + noted.within());
+        let Some(doubles) = run.watch else {
+            return Ok(noted);
+        };
+        Ok(noted.unclear(&doubles, DOUBT))
+    }
+
     /// How other orders of a tie lead away, where that makes them other answers.
-    fn try_orders(&self, tie: &Tie<f64>, continuations: &mut u32) -> Result<Option<Undetermined>> {
-        let room = 4.0 * tie.width + ROUNDINGS * f64::EPSILON * self.scene.duration;
-        let between = [tie.from - room, tie.to + room];
+    fn try_orders(&self, tie: &Tie<Wide>, continuations: &mut u32) -> Result<Option<Undetermined>> {
+        let doubles = ROUNDINGS * f64::EPSILON * self.scene.duration;
+        let within = tie.length().to_f64() + doubles;
+        let room = 4.0 * within;
+        let between = [tie.from.to_f64() - room, tie.to.to_f64() + room];
         let before = |sample: &usize| self.scene.sample_time(*sample) < between[0];
         let Some(start) = (0..self.recording.sample_count()).rfind(before) else {
             return Ok(None);
@@ -93,28 +113,34 @@ impl Judge<'_> {
         if !plain.reaches(between[1]) {
             return Ok(None);
         }
-        let plain = states(&plain, self.scene);
-        let (mut most, mut decides) = (Parting::default(), false);
+        let there = states(&plain, self.scene);
+        let mut most = Parting::default();
+        let mut plain = Some(plain);
         for order in tie.orders() {
             let mut other = run.clone().with_together(Together {
                 between,
-                within: tie.within(),
+                within,
                 order,
             });
             if !other.reaches(between[1]) || *continuations == CONTINUATIONS_MAX {
                 continue;
             }
-            let apart = Parting::default().with_states(&plain, &states(&other, self.scene));
-            if apart.velocity <= self.moved(tie.within()) {
+            let apart = Parting::default().with_states(&there, &states(&other, self.scene));
+            if apart.velocity <= self.moved(within) {
                 continue;
+            }
+            if let Some(plain) = plain.take() {
+                // In doubles the two may come in another order than as recorded.
+                *continuations += 1;
+                most = self.follow(plain, start, most);
             }
             *continuations += 1;
             most = self.follow(other, start, most);
-            decides |= most.position > SAME * self.scale.diagonal
-                || most.velocity > SAME * self.scale.speed;
         }
+        let decides =
+            most.position > SAME * self.scale.diagonal || most.velocity > SAME * self.scale.speed;
         Ok(decides.then(|| Undetermined {
-            time: tie.from,
+            time: tie.from.to_f64(),
             bodies: tie.bodies.clone(),
             spread: Some(most.position),
         }))
