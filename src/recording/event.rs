@@ -195,7 +195,8 @@ impl EventLog {
     /// Sums the impulses of the events from that place in the list on, one event a kind: a series
     /// without end at one instant is one event.
     pub fn sum_from(&mut self, place: usize) {
-        for event in self.events.split_off(place.min(self.events.len())) {
+        let place = place.min(self.events.len());
+        for event in self.events.split_off(place) {
             let same = self.events[place..]
                 .iter_mut()
                 .find(|kept| kept.kind == event.kind);

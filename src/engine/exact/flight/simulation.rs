@@ -55,6 +55,9 @@ pub struct FlightSimulation<R: Real> {
     pub(super) events: u64,
     pub(super) instant: R,
     pub(super) cursor: Option<u64>,
+    /// Speeds of approach of the impacts of this instant, and the first of them in the log.
+    pub(super) series: Vec<f64>,
+    pub(super) series_from: usize,
     pub(super) runaway: Runaway,
     pub(super) crossings: u64,
     pub(super) watch: Option<Box<Watch<R>>>,
@@ -105,6 +108,8 @@ impl<R: Real> FlightSimulation<R> {
             events: 0,
             instant: R::from_f64(f64::NEG_INFINITY),
             cursor: None,
+            series: Vec::new(),
+            series_from: 0,
             runaway: Runaway::new(model.duration.to_f64(), states.len()),
             crossings: 0,
             watch: None,

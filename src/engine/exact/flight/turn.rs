@@ -3,6 +3,7 @@
 use super::plan::Deed;
 use super::simulation::FlightSimulation;
 use super::world::Impact;
+use crate::engine::exact::instant::is_endless;
 use crate::engine::exact::order::INTERNAL;
 use crate::physics::real::Real;
 use crate::recording::{CollapseReason, Event, EventKind, EventLog, Outcome};
@@ -25,6 +26,7 @@ impl<R: Real> FlightSimulation<R> {
         loop {
             let (due, first) = self.queue.first();
             if due > time {
+                self.end_series(log);
                 return None;
             }
             if self.effort.is_spent() {
@@ -136,12 +138,15 @@ impl<R: Real> FlightSimulation<R> {
         }
         let approach = match agenda.planned.deed {
             Deed::Event(kind) => {
+                if self.world.now > self.instant + self.world.tie {
+                    self.end_series(log);
+                }
                 self.advance_round(agenda.planned.rank);
                 let foreseen = self.foresee(kind);
                 let impact = self.happen(kind);
                 if let Some(impact) = impact {
                     self.watch(kind, foreseen);
-                    self.note(kind, impact.impulse, log);
+                    self.note(kind, impact, log);
                 }
                 impact.map_or(R::zero(), |impact| impact.approach)
             }
@@ -175,15 +180,30 @@ impl<R: Real> FlightSimulation<R> {
         watch.noted.note(self.world.now, &set_off);
     }
 
-    fn note(&mut self, kind: EventKind, impulse: R, log: &mut Option<&mut EventLog>) {
+    fn note(&mut self, kind: EventKind, impact: Impact<R>, log: &mut Option<&mut EventLog>) {
+        let Impact { impulse, approach } = impact;
         self.events += 1;
         if let Some(log) = log {
+            // A stop is no impact, whatever comes of it.
+            self.series
+                .extend(Some(approach.to_f64()).filter(|it| it.is_finite()));
             log.push(Event {
                 time: self.world.now.to_f64(),
                 kind,
                 impulse: impulse.to_f64(),
             });
         }
+    }
+
+    /// Sums the impacts of an instant that is over where their series had no end.
+    fn end_series(&mut self, log: &mut Option<&mut EventLog>) {
+        if let Some(log) = log {
+            if is_endless(self.series.iter().copied()) {
+                log.sum_from(self.series_from);
+            }
+            self.series_from = log.events().len();
+        }
+        self.series.clear();
     }
 
     fn collapse(&self, body: usize, deed: Deed) -> Outcome {
