@@ -11,7 +11,11 @@ use carom::engine::{DEFAULT_DT, engine, record};
 use carom::recording::{
     Digits, Event, Recording, Undetermined, read_events, read_trajectory_start,
 };
-use carom::scene::{Scene, parse};
+use carom::scene::{Contact, Effects, Scene, parse};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+use crate::scenes::{body, scene};
 
 /// A case of `tests/faults`: its scene, and its truth as far as there is one.
 fn case(name: &str) -> (Scene, Option<Recording>) {
@@ -156,7 +160,9 @@ fn assert_answer(name: &str, expected: &Answer) {
             assert!((from - time).abs() < 1e-6, "{name}: {from}");
             assert!((*least..=*most).contains(&spread), "{name}: {spread}");
         }
-        (Answer::Single, Some(_)) | (Answer::None(..), None) => panic!("{name}: {found:?}"),
+        (Answer::Single, Some(_)) | (Answer::None(..), None) => {
+            panic!("{name}: {found:?}")
+        }
     }
     let Some(truth) = &truth else { return };
     assert_eq!(lie(&scene, &recording, truth), None, "{name}");
@@ -227,4 +233,106 @@ fn a_tie_is_seen_at_every_offset() {
         assert!((spread - 0.117_187_5).abs() < 1e-9, "{step}: {spread}");
         assert_eq!(found.bodies, [1]);
     }
+}
+
+/// Numbers from a seed.
+struct Draw(Pcg64);
+
+impl Draw {
+    fn of(&mut self, count: u64) -> u64 {
+        (self.0.next_u64() >> 11) % count
+    }
+
+    /// A multiple of `unit`, at least one and at most `count` of them.
+    fn multiple(&mut self, unit: f64, count: u64) -> f64 {
+        unit * (1 + self.of(count)) as f64
+    }
+}
+
+/// Two balls that meet a third at one instant from two sides, in decimals, some of them far away
+/// from billiards that forget their digits.
+fn tie_by_symmetry(seed: u64) -> Scene {
+    let mut draw = Draw(Pcg64::seed_from_u64(seed));
+    let (apart, speed) = (draw.multiple(0.1, 20) + 0.5, draw.multiple(0.1, 30));
+    let (radius, own) = (draw.multiple(0.01, 10), draw.multiple(0.01, 10));
+    let at = draw.multiple(0.1, 20) - 1.0;
+    let [left, right, middle] = [(); 3].map(|()| draw.multiple(0.5, 4));
+    let e = draw.multiple(0.1, 10);
+    let bodies = vec![
+        body("l", left, radius, [at - apart, 0.0, 0.0], [speed, 0.0, 0.0]),
+        body("m", middle, own, [at, 0.0, 0.0], [0.0; 3]),
+        body(
+            "r",
+            right,
+            radius,
+            [at + apart, 0.0, 0.0],
+            [-speed, 0.0, 0.0],
+        ),
+        body("far", 1.0, 0.1, [0.3, 0.0, 40.0], [0.0, 0.0, 0.0]),
+    ];
+    let effects = Effects {
+        contact: Some(Contact { restitution: e }),
+        ..Effects::default()
+    };
+    scene(4.0, 0.25, bodies, effects)
+}
+
+/// The scene with its bodies in another order, moved, and turned by quarters.
+fn relabelled(scene: &Scene, draw: &mut Draw) -> Scene {
+    let mut other = scene.clone();
+    for place in (1..other.bodies.len()).rev() {
+        other.bodies.swap(place, draw.of(place as u64 + 1) as usize);
+    }
+    let (shift, turn) = (draw.multiple(0.1, 9), draw.of(3) as usize);
+    for body in &mut other.bodies {
+        body.position[0] += shift;
+        body.position.rotate_right(turn);
+        body.velocity.rotate_right(turn);
+    }
+    other
+}
+
+/// No relabelling changes whether a tie is undetermined, nor from when on.
+fn ties_are_judged_alike(seeds: std::ops::Range<u64>) {
+    let (mut scenes, mut open, mut lies) = (0, 0, Vec::new());
+    for seed in seeds {
+        let scene = tie_by_symmetry(seed);
+        let mut draw = Draw(Pcg64::seed_from_u64(seed + 1_000_000));
+        let verdict = |scene: &Scene| exact(scene).undetermined.map(|found| found.time);
+        let first = verdict(&scene);
+        open += usize::from(first.is_some());
+        for _ in 0..3 {
+            scenes += 1;
+            let other = verdict(&relabelled(&scene, &mut draw));
+            let alike = match (first, other) {
+                (Some(one), Some(other)) => (one - other).abs() < 1e-9,
+                (None, None) => true,
+                (Some(_), None) | (None, Some(_)) => false,
+            };
+            if !alike {
+                lies.push((seed, first, other));
+            }
+        }
+    }
+    println!(
+        "{scenes} relabelled scenes, {open} of the ties undetermined, {} judged otherwise",
+        lies.len()
+    );
+    assert!(lies.is_empty(), "{lies:?}");
+}
+
+#[test]
+fn ties_by_symmetry_are_judged_alike() {
+    ties_are_judged_alike(0..40);
+}
+
+/// `CAROM_SCENES` asks for more of them.
+#[test]
+#[ignore = "takes minutes"]
+fn two_thousand_ties_by_symmetry_are_judged_alike() {
+    let more = std::env::var("CAROM_SCENES").ok();
+    let count = more
+        .and_then(|count| count.parse().ok())
+        .unwrap_or(2000_u64);
+    ties_are_judged_alike(0..count.div_ceil(3));
 }

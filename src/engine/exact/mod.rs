@@ -129,7 +129,11 @@ pub fn phases(scene: &Scene, settings: ExactSettings) -> Result<Vec<Phase>> {
         event(
             settings.certify,
             "certify",
-            "again in other arithmetic and from moved inputs",
+            if has_forces(scene) {
+                "again by other orders and tolerances; near ties in other orders"
+            } else {
+                "twice more from moved inputs; near ties in other orders"
+            },
         ),
     ];
     Ok(phases.into_iter().flatten().collect())
