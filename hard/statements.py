@@ -44,8 +44,10 @@ def joined(*parts):
 
 
 # --- what must hold -----------------------------------------------------------------------------------------------
-def energy(why, gain_max=KEPT, loss_max=None):
+def energy(why, gain_max=KEPT, loss_max=None, scale=None):
     bound = dict(gain_max=gain_max)
+    if scale is not None:
+        bound["scale"] = scale
     if loss_max is not None:
         bound["loss_max"] = loss_max
     return dict(energy=dict(**bound, why=why))

@@ -4,9 +4,14 @@
 //! remedy. A simulation that blows up is no error but a result: see
 //! [`Outcome`](crate::recording::Outcome).
 
+mod shown;
+
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
+
+pub(crate) use shown::is_invisible;
+pub use shown::{LINE_MAX, QUOTED_MAX, code, harmless, number, one_line, quoted};
 
 /// Shorthand for results of carom.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -27,7 +32,7 @@ pub enum Error {
         message: String,
     },
     /// A scene built by code is not a scene.
-    #[error("scene `{scene}`: {message}")]
+    #[error("scene `{}`: {message}", quoted(.scene))]
     Scene {
         /// Name of the scene.
         scene: String,
@@ -60,11 +65,19 @@ pub enum Error {
     },
     /// A file or folder could not be written.
     #[error(
-        "{path}: cannot be written: {source}; nothing was left half-written, choose another place with --out or make room"
+        "{path}: cannot be written: {source}; what stood there before is unchanged, choose another place with --out or make room"
     )]
     Write {
         /// The file or folder.
         path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Standard output cannot be written.
+    #[error(
+        "standard output cannot be written: {source}; what the command was to write into files is there"
+    )]
+    Stdout {
         /// What the system said.
         source: std::io::Error,
     },
@@ -80,8 +93,9 @@ pub enum Error {
     },
     /// Points of another build that cannot stand beside those measured now.
     #[error(
-        "{path}: has {what} {found}; join files of other builds, measured with the same --dt, \
-         --filling, --open and --seed"
+        "{path}: has {what} {}; join files of other builds, measured with the same --dt, \
+         --filling, --open and --seed",
+        quoted(.found)
     )]
     Join {
         /// The file.
@@ -92,7 +106,7 @@ pub enum Error {
         found: String,
     },
     /// No engine of that name.
-    #[error("no engine is called `{name}`; there are: {known}")]
+    #[error("no engine is called `{}`; there are: {known}", quoted(.name))]
     UnknownEngine {
         /// The name asked for.
         name: String,
@@ -120,7 +134,7 @@ pub enum Error {
         remedy: String,
     },
     /// A user's solver that cannot be started at all: carom could not run.
-    #[error("solver `{program}` cannot be started: {message}")]
+    #[error("solver `{}` cannot be started: {message}", quoted(.program))]
     SolverStart {
         /// The program.
         program: String,
@@ -150,7 +164,7 @@ pub enum Error {
         name: String,
     },
     /// No study of that name.
-    #[error("no study is called `{name}`; there are: {known}")]
+    #[error("no study is called `{}`; there are: {known}", quoted(.name))]
     UnknownStudy {
         /// The name asked for.
         name: String,
@@ -169,7 +183,8 @@ pub enum Error {
     },
     /// No scene file and no case of that name.
     #[error(
-        "`{name}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}"
+        "`{}` is neither a scene file nor a case; `carom scenes list` shows the cases, with --hard the hard ones{hint}",
+        quoted(.name)
     )]
     UnknownCase {
         /// The name asked for.
@@ -178,7 +193,7 @@ pub enum Error {
         hint: String,
     },
     /// A case whose scene has another name than its folder.
-    #[error("{file}: the scene is called `{scene}`; a case's scene has the name of its folder")]
+    #[error("{file}: the scene is called `{}`; a case's scene has the name of its folder", quoted(.scene))]
     CaseName {
         /// The scene file.
         file: String,
@@ -194,7 +209,7 @@ pub enum Error {
         message: String,
     },
     /// A time step that cannot be taken.
-    #[error("time step {dt:?} s: {message}")]
+    #[error("time step {} s: {message}", number(*.dt))]
     Step {
         /// The step asked for.
         dt: f64,
@@ -216,8 +231,38 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// A file that carom must not replace.
+    #[error("{path}: {reason}; nothing was written, {remedy}")]
+    Foreign {
+        /// The file or folder.
+        path: PathBuf,
+        /// What it is.
+        reason: &'static str,
+        /// What would be right.
+        remedy: &'static str,
+    },
+    /// Another run writes into the folder.
+    #[error(
+        "{path}: another carom is writing there; wait until it has ended, or choose another folder with --out"
+    )]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The system refused to put a complete result in place.
+    #[error(
+        "{path}: cannot be put in place: {source}; the result is in {stage}; allow it and run again into the same folder, or remove that folder to give the result up"
+    )]
+    Commit {
+        /// The file that could not be renamed or removed.
+        path: PathBuf,
+        /// Where the result is.
+        stage: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A number that an argument does not allow.
-    #[error("--{argument} {found}: {remedy}")]
+    #[error("--{argument} {}: {remedy}", quoted(.found))]
     Argument {
         /// Name of the argument, without dashes.
         argument: &'static str,
@@ -225,6 +270,22 @@ pub enum Error {
         found: String,
         /// What would be right.
         remedy: String,
+    },
+    /// An option that would have no effect where it stands.
+    #[error("--{option} does nothing {place}; {remedy}")]
+    Idle {
+        /// Name of the option, without dashes.
+        option: &'static str,
+        /// Beside which others it stands, or which are missing.
+        place: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// Words on the command line that carom does not understand.
+    #[error("{message}")]
+    Usage {
+        /// What is wrong, and what would be right.
+        message: String,
     },
     /// A page could not be filled in: a fault of carom's own templates.
     #[error("page template: {0}")]
@@ -261,6 +322,16 @@ impl Error {
         }
     }
 
+    /// Something that stands in the way of a result, whatever options are given.
+    #[must_use]
+    pub fn foreign(path: &Path, reason: &'static str) -> Self {
+        Self::Foreign {
+            path: path.to_owned(),
+            reason,
+            remedy: "choose another folder with --out, or move it away",
+        }
+    }
+
     /// An unwritable file or folder.
     #[must_use]
     pub fn write(path: &Path, source: std::io::Error) -> Self {
@@ -269,15 +340,4 @@ impl Error {
             source,
         }
     }
-}
-
-/// Text of foreign origin as a message of one line shows it: what a terminal would obey, or would
-/// not show, is escaped.
-pub(crate) fn harmless(text: &str) -> String {
-    let shown = |c: char| match c {
-        '"' | '\'' | '\\' => c.to_string(),
-        '\t' => ' '.to_string(),
-        c => c.escape_debug().to_string(),
-    };
-    text.chars().map(shown).collect()
 }

@@ -7,7 +7,7 @@
 //! scene file --> Scene --> plan --> engine --> Recording --> comparison --> study --> CSV, PNG, pages
 //! ```
 //!
-//! Each module imports only from those above it in this list: [`error`], [`scene`],
+//! Each module imports only from those above it in this list: [`error`], `input`, [`scene`],
 //! [`physics`], [`recording`], [`engine`], [`case`], [`compare`], [`study`],
 //! [`report`], [`cli`].
 
@@ -16,6 +16,7 @@ pub mod cli;
 pub mod compare;
 pub mod engine;
 pub mod error;
+mod input;
 pub mod physics;
 pub mod recording;
 pub mod report;

@@ -5,8 +5,11 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::Profile;
+use crate::engine::StepGrid;
+use crate::error::{Error, number, quoted};
 use crate::physics::{BodyState, Vector3};
 use crate::recording::initial_states;
+use crate::scene::check::check_text;
 use crate::scene::fault::{fault, finite, finite_vector, not_negative, positive};
 use crate::scene::{Fault, FieldPath, Scene, exactly, parse_checked};
 
@@ -53,7 +56,9 @@ pub struct EnergyBound {
     pub gain_max: f64,
     /// How far it may fall below it; without, as far as it likes.
     pub loss_max: Option<f64>,
-    /// The scale, kg length²/s²; without, |kinetic| + |potential| of the start.
+    /// The scale, kg length²/s²; without, the kinetic energy of the start and the
+    /// sizes of the energies of attraction and springs there. A scene that starts with none of
+    /// these, as bodies that fall in uniform gravity do, must state it.
     pub scale: Option<f64>,
     /// Why it must hold.
     pub why: String,
@@ -232,7 +237,10 @@ impl Expected {
     /// # Errors
     /// The first [`Fault`].
     pub fn check(&self, scene: &Scene) -> std::result::Result<(), Fault> {
-        self.check_ladder()?;
+        self.check_ladder(scene)?;
+        if let Some(topic) = &self.topic {
+            check_text(&root("topic"), topic)?;
+        }
         let effects = &scene.effects;
         let starts = initial_states(scene);
         let at_rest = starts.iter().all(|it| it.velocity == Vector3::zeros());
@@ -304,7 +312,7 @@ impl Expected {
             || end.is_some()
     }
 
-    fn check_ladder(&self) -> std::result::Result<(), Fault> {
+    fn check_ladder(&self, scene: &Scene) -> std::result::Result<(), Fault> {
         let path = root("dt");
         if self.dt.is_empty() {
             return Err(fault(path, "empty", "give one step at least, in s"));
@@ -312,9 +320,13 @@ impl Expected {
         for (place, dt) in self.dt.iter().enumerate() {
             let here = path.clone().index(place);
             positive(&here, *dt)?;
+            // The steps that stand for none in the file are no fault of the file.
+            if self.dt != LADDER {
+                check_step(&here, *dt, scene)?;
+            }
             if place > 0 && *dt >= self.dt[place - 1] {
                 let remedy = "give the steps from the largest to the smallest, each once";
-                return Err(fault(here, dt.to_string(), remedy));
+                return Err(fault(here, number(*dt), remedy));
             }
         }
         Ok(())
@@ -383,11 +395,11 @@ impl Expected {
             let here = path.clone().key("bodies").index(place);
             let name = here.clone().key("name");
             if scene.body_index(&state.name).is_none() {
-                let found = format!("`{}`, and no body has that name", state.name);
+                let found = format!("`{}`, and no body has that name", quoted(&state.name));
                 return Err(fault(name, found, "name a body of the scene"));
             }
             if end.bodies[..place].iter().any(|it| it.name == state.name) {
-                let found = format!("`{}` again", state.name);
+                let found = format!("`{}` again", quoted(&state.name));
                 return Err(fault(name, found, "name each body once"));
             }
             finite_vector(&here.clone().key("position"), &state.position)?;
@@ -424,12 +436,29 @@ fn check_scale(
     }
 }
 
+/// A step that the scene can be run at.
+pub(super) fn check_step(
+    path: &FieldPath,
+    dt: f64,
+    scene: &Scene,
+) -> std::result::Result<(), Fault> {
+    positive(path, dt)?;
+    StepGrid::new(scene, dt).map(drop).map_err(|wrong| {
+        let remedy = match wrong {
+            Error::Step { message, .. } => message,
+            other => other.to_string(),
+        };
+        fault(path.clone(), format!("{} s", number(dt)), remedy)
+    })
+}
+
 fn check_after(path: &FieldPath, after: f64, scene: &Scene) -> std::result::Result<(), Fault> {
     let path = path.clone().key("after");
     not_negative(&path, after)?;
     if after > scene.duration {
-        let remedy = format!("the scene ends at {} s; give a time in it", scene.duration);
-        return Err(fault(path, format!("{after} s"), remedy));
+        let end = number(scene.duration);
+        let remedy = format!("the scene ends at {end} s; give a time in it");
+        return Err(fault(path, format!("{} s", number(after)), remedy));
     }
     Ok(())
 }
@@ -439,5 +468,5 @@ fn check_reason(path: &FieldPath, why: &str) -> std::result::Result<(), Fault> {
         let remedy = "say where the bound comes from";
         return Err(fault(path.clone().key("why"), "empty", remedy));
     }
-    Ok(())
+    check_text(&path.clone().key("why"), why)
 }

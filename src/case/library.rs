@@ -1,15 +1,18 @@
 //! Where cases come from, and how one is read.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
 use super::{Case, Evidence, Expected, OWN_ORIGIN, TRUTH, baseline_file, thinning};
 use crate::error::{Error, Result};
+use crate::input;
 use crate::recording::{
-    Recording, Undetermined, check_start, read_events, read_trajectory, read_trajectory_start,
+    EVENTS_BYTES_MAX, Recording, Undetermined, check_start, read_events, read_trajectory,
+    read_trajectory_start, trajectory_bytes_max,
 };
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, TEXT_BYTES_MAX};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference");
 static EMBEDDED_HARD: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/hard");
@@ -62,11 +65,13 @@ impl Library {
     pub fn names(&self) -> Result<Vec<String>> {
         let mut names = match self {
             Self::Folder(folder) => {
+                is_there(folder)?;
                 let unreadable = |source| Error::read(folder, source);
                 let mut names = Vec::new();
                 for entry in std::fs::read_dir(folder).map_err(unreadable)? {
                     let entry = entry.map_err(unreadable)?;
-                    if entry.path().join("scene.toml").is_file() {
+                    let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+                    if !is_hidden && entry.path().join("scene.toml").is_file() {
                         names.push(entry.file_name().to_string_lossy().into_owned());
                     }
                 }
@@ -118,15 +123,13 @@ impl Library {
         let Some(table) = self.file(name, "truth.csv")? else {
             return Ok(None);
         };
-        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
+        let (rows, path) = (table.table(trajectory_bytes_max(scene))?, &*table.path);
         let mut recording = match evidence {
-            Evidence::Independent => read_trajectory(TRUTH, scene, bytes, path)?,
-            Evidence::Own => {
-                up_to_its_end(read_trajectory_start(TRUTH, scene, bytes, path)?, scene)
-            }
+            Evidence::Independent => read_trajectory(TRUTH, scene, rows, path)?,
+            Evidence::Own => up_to_its_end(read_trajectory_start(TRUTH, scene, rows, path)?, scene),
         };
         if let Some(events) = self.file(name, "events.csv")? {
-            recording.events = read_events(scene, events.bytes.as_slice(), &events.path)?;
+            recording.events = read_events(scene, events.table(EVENTS_BYTES_MAX)?, &events.path)?;
         }
         check_start(scene, &recording, path)?;
         Ok(Some(recording))
@@ -148,8 +151,8 @@ impl Library {
             return Ok(None);
         };
         let thinned = scene.every(thinning(scene));
-        let (bytes, path) = (table.bytes.as_slice(), &*table.path);
-        read_trajectory_start(engine, &thinned, bytes, path).map(Some)
+        let rows = table.table(trajectory_bytes_max(&thinned))?;
+        read_trajectory_start(engine, &thinned, rows, &table.path).map(Some)
     }
 
     /// The text of a case's `expected.toml`, as it stands.
@@ -180,13 +183,16 @@ impl Library {
         match self {
             Self::Folder(folder) => {
                 let path = folder.join(case).join(file);
-                match std::fs::read(&path) {
-                    Ok(bytes) => Ok(Some(CaseFile {
+                match path.try_exists() {
+                    Ok(true) => Ok(Some(CaseFile {
                         path: path.display().to_string(),
-                        bytes,
+                        place: Place::OnDisk(path),
                     })),
-                    Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => Ok(None),
-                    Err(wrong) => Err(Error::read(&path, wrong)),
+                    Ok(false) => is_there(folder).map(|()| None),
+                    Err(wrong) => {
+                        is_there(folder)?;
+                        Err(Error::read(&path, wrong))
+                    }
                 }
             }
             Self::Embedded => Ok(file_in(&EMBEDDED, case, file)),
@@ -213,6 +219,20 @@ impl Library {
     }
 }
 
+/// A folder that is not there holds no case, but that is not what is wrong.
+fn is_there(folder: &Path) -> Result<()> {
+    let what = match std::fs::metadata(folder) {
+        Ok(found) if found.is_dir() => return Ok(()),
+        Ok(_) => "it is no folder; name a folder of cases",
+        Err(wrong) if wrong.kind() == std::io::ErrorKind::NotFound => {
+            "there is no such folder; name a folder of cases"
+        }
+        Err(wrong) => return Err(Error::read(folder, wrong)),
+    };
+    let source = std::io::Error::new(std::io::ErrorKind::NotFound, what);
+    Err(Error::read(folder, source))
+}
+
 /// The names of the cases compiled in.
 fn names_in(embedded: &Dir<'_>) -> Vec<String> {
     let is_case = |dir: &&Dir<'_>| dir.get_file(dir.path().join("scene.toml")).is_some();
@@ -221,11 +241,11 @@ fn names_in(embedded: &Dir<'_>) -> Vec<String> {
 }
 
 /// A file of a case compiled in.
-fn file_in(embedded: &Dir<'_>, case: &str, file: &str) -> Option<CaseFile> {
+fn file_in(embedded: &'static Dir<'static>, case: &str, file: &str) -> Option<CaseFile> {
     let found = embedded.get_file(format!("{case}/{file}"))?;
     Some(CaseFile {
         path: format!("{case}/{file} (compiled in)"),
-        bytes: found.contents().to_vec(),
+        place: Place::CompiledIn(found.contents()),
     })
 }
 
@@ -250,12 +270,28 @@ fn without_heading(text: &str) -> &str {
 
 struct CaseFile {
     path: String,
-    bytes: Vec<u8>,
+    place: Place,
+}
+
+enum Place {
+    OnDisk(PathBuf),
+    CompiledIn(&'static [u8]),
 }
 
 impl CaseFile {
     fn text(&self) -> Result<String> {
-        let text = String::from_utf8(self.bytes.clone());
-        text.map_err(|wrong| Error::not_utf8(&self.path, &wrong))
+        match &self.place {
+            Place::OnDisk(path) => input::text(path, TEXT_BYTES_MAX),
+            Place::CompiledIn(bytes) => String::from_utf8(bytes.to_vec())
+                .map_err(|wrong| Error::not_utf8(&self.path, &wrong)),
+        }
+    }
+
+    /// The rows of a table of at most so many bytes.
+    fn table(&self, bytes_max: u64) -> Result<Box<dyn Read>> {
+        match &self.place {
+            Place::OnDisk(path) => Ok(Box::new(input::open(path, bytes_max)?)),
+            Place::CompiledIn(bytes) => Ok(Box::new(*bytes)),
+        }
     }
 }

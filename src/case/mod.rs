@@ -62,14 +62,9 @@ pub struct Case {
 /// # Errors
 /// Those of reading it, or [`Error::UnknownCase`].
 pub fn scene_or_case(name: &str, library: &Library) -> Result<Case> {
-    let path = Path::new(name);
-    let is_file = path.is_file()
-        || path
-            .extension()
-            .is_some_and(|extension| extension == "toml");
-    if is_file {
+    if is_scene_file(name) {
         return Ok(Case {
-            scene: scene::read(path)?,
+            scene: scene::read(Path::new(name))?,
             truth: None,
             evidence: None,
             origin: None,
@@ -77,6 +72,14 @@ pub fn scene_or_case(name: &str, library: &Library) -> Result<Case> {
         });
     }
     case(name, library)
+}
+
+/// Whether a name means a scene file, and no case of a library.
+#[must_use]
+pub fn is_scene_file(name: &str) -> bool {
+    let path = Path::new(name);
+    let is_toml = |extension: &std::ffi::OsStr| extension == "toml";
+    path.is_file() || path.extension().is_some_and(is_toml)
 }
 
 /// A case by its name, of the library or else a hard one.

@@ -3,7 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::fault::{fault, not_negative, positive};
+use super::expected::check_step;
+use crate::error::number;
+use crate::scene::check::check_text;
+use crate::scene::fault::{fault, not_negative};
 use crate::scene::{Fault, FieldPath, Scene};
 
 /// What is measured of a solver on a case.
@@ -126,7 +129,9 @@ impl Profile {
     }
 
     pub(super) fn check(&self, path: &FieldPath, scene: &Scene) -> Result<(), Fault> {
-        positive(&path.clone().key("dt"), self.dt)?;
+        check_step(&path.clone().key("dt"), self.dt, scene)?;
+        check_text(path, &self.made)?;
+        check_text(path, &self.digest)?;
         for (key, tolerances) in self.comparisons() {
             if let Some(tolerances) = tolerances {
                 tolerances.check(&path.clone().key(key), scene)?;
@@ -187,13 +192,17 @@ impl Tolerances {
         let until = path.clone().key("until");
         not_negative(&until, self.until)?;
         if self.until > scene.duration * (1.0 + 1e-9) {
-            let remedy = format!("the scene ends at {} s; give a time in it", scene.duration);
-            return Err(fault(until, format!("{} s", self.until), remedy));
+            let remedy = format!(
+                "the scene ends at {} s; give a time in it",
+                number(scene.duration)
+            );
+            return Err(fault(until, format!("{} s", number(self.until)), remedy));
         }
         for (metric, tolerance) in self.all() {
             let path = path.clone().key(metric.key());
             not_negative(&path.clone().key("value"), tolerance.value)?;
             not_negative(&path.clone().key("tolerance"), tolerance.tolerance)?;
+            check_text(&path.key("why"), &tolerance.why)?;
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use clap::Args;
 use crate::case::Library;
 use crate::engine::{DEFAULT_DT, EngineSpec, engine, engines, prepare};
 use crate::error::{Error, Result};
+use crate::report::Replace;
 use crate::scene::Scene;
 
 /// Which engines, and with which step.
@@ -66,6 +67,24 @@ pub(super) fn chosen(names: &[String], default: &[&str]) -> Result<Vec<EngineSpe
 /// The engines that a report compares unless others are asked for.
 pub(super) const REPORTED: [&str; 5] =
     ["lecture", "rapier", "rapier-f64", "rapier-matched", "exact"];
+
+/// What the files of a result may replace.
+#[derive(Debug, Args)]
+pub(super) struct ReplaceArgs {
+    /// Replace files in the output folder that carom did not write, or that were changed since
+    #[arg(long)]
+    force: bool,
+}
+
+impl ReplaceArgs {
+    pub fn replace(&self) -> Replace {
+        if self.force {
+            Replace::All
+        } else {
+            Replace::Own
+        }
+    }
+}
 
 /// Where cases come from.
 #[derive(Debug, Args)]

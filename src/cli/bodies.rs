@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::output::{progress, say, warn};
+use super::output::{progress, say, say_lines, warn};
 use crate::engine::{DEFAULT_DT, EngineSpec};
 use crate::error::{Error, Result};
-use crate::report::{Folder, bodies_findings, bodies_table, write_bodies};
+use crate::report::{BODIES_FILES, Output, Replace, bodies_findings, bodies_table, write_bodies};
+use crate::scene::BODIES_MAX;
 use crate::study::Timing;
 use crate::study::bodies::{BodiesOptions, BodiesStudy, Walls, bodies_cost, joined};
-
-/// Fewer bodies hit nothing, more take hours.
-const BODIES: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// What the study of numbers of bodies is asked beyond what every study of cost is.
 #[derive(Debug, clap::Args)]
@@ -26,16 +24,21 @@ pub(super) struct BodiesArgs {
     )]
     pub sizes: Vec<usize>,
     /// Step of the engines, s; with --bodies
-    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true, requires = "sizes")]
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_DT, allow_negative_numbers = true)]
     dt: f64,
     /// Share of the box that the spheres fill; with --bodies
-    #[arg(long, value_name = "SHARE", default_value_t = 0.1, requires = "sizes")]
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.1,
+        allow_negative_numbers = true
+    )]
     filling: f64,
     /// Take the walls away before the clock starts; with --bodies
-    #[arg(long, requires = "sizes")]
+    #[arg(long)]
     open: bool,
     /// A bodies.csv that another build of carom has measured, to stand beside; with --bodies
-    #[arg(long = "join", value_name = "FILE", requires = "sizes")]
+    #[arg(long = "join", value_name = "FILE")]
     joined: Vec<PathBuf>,
 }
 
@@ -49,7 +52,7 @@ impl BodiesArgs {
         specs: &[EngineSpec],
         timing: Timing,
         budget: Option<u64>,
-        out: &Path,
+        (out, replace): (&Path, Replace),
         quiet: bool,
     ) -> Result<()> {
         if !(self.dt.is_finite() && self.dt > 0.0) {
@@ -72,7 +75,10 @@ impl BodiesArgs {
         };
         // Before the long run, so that a wrong file is told at once.
         let others = joined(&self.joined, &options)?;
-        let folder = Folder::open(out)?;
+        let output = Output::open(out, replace)?;
+        let folder = output.folder();
+        folder.claim(BODIES_FILES)?;
+        folder.unfinished().claim(BODIES_FILES)?;
         let bar = progress(1, quiet);
         let watch = |bodies: usize, done: usize, all: usize| {
             bar.set_length(all as u64);
@@ -80,11 +86,16 @@ impl BodiesArgs {
             bar.set_message(format!("{bodies} bodies"));
         };
         // After each size, so that an interrupted study leaves what it has found.
-        let keep = |study: &BodiesStudy| write_bodies(&folder, study);
+        let keep = |study: &BodiesStudy| {
+            let mut so_far = study.clone();
+            so_far.points.extend_from_slice(&others);
+            folder.keep_unfinished(|folder| write_bodies(folder, &so_far))
+        };
         let mut study = bodies_cost(specs, &options, &watch, &keep)?;
         bar.finish_and_clear();
-        study.points.extend(others);
+        study.points.extend_from_slice(&others);
         write_bodies(&folder, &study)?;
+        output.commit()?;
         if study.machine.is_busy() {
             warn(
                 "something else ran when the study began, or had just ended; ratios hold better \
@@ -97,13 +108,13 @@ impl BodiesArgs {
         if quiet {
             return Ok(());
         }
-        say(bodies_table(&study))?;
+        say_lines(bodies_table(&study))?;
         for finding in bodies_findings(&study) {
             say(finding)?;
         }
         say(format_args!(
             "Written to {}",
-            folder.path().join("README.md").display()
+            out.join("README.md").display()
         ))
     }
 
@@ -112,11 +123,11 @@ impl BodiesArgs {
         let mut sizes = self.sizes.clone();
         sizes.sort_unstable();
         sizes.dedup();
-        match sizes.iter().find(|size| !BODIES.contains(size)) {
+        match sizes.iter().find(|size| !(1..=BODIES_MAX).contains(*size)) {
             Some(size) => Err(Error::Argument {
                 argument: "bodies",
                 found: size.to_string(),
-                remedy: format!("give {} to {}", BODIES.start(), BODIES.end()),
+                remedy: format!("give 1 to {BODIES_MAX}"),
             }),
             None => Ok(sizes),
         }

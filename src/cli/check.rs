@@ -1,7 +1,6 @@
 //! `carom check`: does a solver still agree with truth, with itself and with Rapier?
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,13 +8,15 @@ use clap::ValueEnum;
 use rayon::prelude::*;
 
 use super::args::{LibraryArgs, chosen};
-use super::output::{progress, say};
+use super::output::{progress, say, say_json, say_lines};
 use crate::case::{Case, Library, REFERENCE};
 use crate::engine::external::Limits;
 use crate::engine::{DEFAULT_DT, EngineKind, EngineSpec, engines};
-use crate::error::{Error, Result};
-use crate::recording::read_trajectory_start;
+use crate::error::{Error, Result, number};
+use crate::input;
+use crate::recording::{read_trajectory_start, trajectory_bytes_max};
 use crate::report::{blessing_text, check_junit, check_text, replay_text, write_blessing};
+use crate::scene::check::check_scene_name;
 use crate::study::check::{
     Blessing, Candidate, Program, Replay, Subject, TrajectoryFile, bless, check, digests, profile,
     replay,
@@ -23,6 +24,9 @@ use crate::study::check::{
 
 /// Whom a program is judged like if nothing is said.
 const DEFAULT_LIKE: &str = "lecture";
+
+/// Seconds that a program may be given, at most: more than eleven days are a slip of the pen.
+const LIMIT_MAX: f64 = 1e6;
 
 /// How the report is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -76,7 +80,7 @@ pub(super) struct Args {
     #[arg(long, conflicts_with_all = ["replay", "digests"])]
     bless: bool,
     /// Store also what would notice less than before
-    #[arg(long, requires = "bless")]
+    #[arg(long)]
     widen: bool,
     /// Run one case again and compare it bit by bit with a trajectory that `carom run` wrote
     #[arg(long, value_name = "FILE", conflicts_with = "digests")]
@@ -88,6 +92,9 @@ pub(super) struct Args {
 
 /// Whether everything held.
 pub(super) fn run(args: &Args) -> Result<bool> {
+    if let Some(like) = &args.like {
+        check_label(like)?;
+    }
     let library = args.library.library();
     let cases = cases(&args.cases, &library)?;
     let specs = specs(&args.engines)?;
@@ -117,16 +124,25 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     let bar = progress(cases.len() * candidates.len(), args.quiet);
     let report = check(&cases, &library, &candidates, &|case| {
         bar.inc(1);
-        bar.set_message(case.to_owned());
+        bar.set_message(case);
     })?;
     bar.finish_and_clear();
     match args.format {
         Format::Text if args.quiet => {}
-        Format::Text => say(check_text(&report, args.verbose).trim_end())?,
-        Format::Json => say(serde_json::to_string_pretty(&report)?)?,
-        Format::Junit => say(check_junit(&report)?.trim_end())?,
+        Format::Text => say_lines(check_text(&report, args.verbose).trim_end())?,
+        Format::Json => say_json(&report)?,
+        Format::Junit => say_lines(check_junit(&report)?.trim_end())?,
     }
     Ok(report.holds)
+}
+
+/// A label stands in the names of files and as a key of `expected.toml`.
+fn check_label(like: &str) -> Result<()> {
+    check_scene_name(like).map_err(|fault| Error::Argument {
+        argument: "like",
+        found: fault.found,
+        remedy: "use 1 to 100 of the characters a-z, 0-9 and `-`".into(),
+    })
 }
 
 /// The program or the file that is to be judged, if one is named.
@@ -153,11 +169,11 @@ fn own_solver(args: &Args, cases: &[Case]) -> Result<Option<Box<dyn Subject>>> {
 
 fn limit(seconds: f64) -> Result<Duration> {
     let limit = Duration::try_from_secs_f64(seconds).ok();
-    let limit = limit.filter(|limit| !limit.is_zero());
+    let limit = limit.filter(|limit| !limit.is_zero() && seconds <= LIMIT_MAX);
     limit.ok_or_else(|| Error::Argument {
         argument: "limit",
-        found: seconds.to_string(),
-        remedy: "give a number of seconds above 0".into(),
+        found: number(seconds),
+        remedy: format!("give a finite number of seconds above 0, at most {LIMIT_MAX}"),
     })
 }
 
@@ -204,13 +220,13 @@ fn run_again(file: &Path, cases: &[Case], specs: &[EngineSpec], args: &Args) -> 
         (_, false) => return Err(one("name the one engine that made it")),
     };
     let scene = &case.scene;
-    let table = File::open(file).map_err(|wrong| Error::read(file, wrong))?;
+    let table = input::open(file, trajectory_bytes_max(scene))?;
     let name = file.display().to_string();
     let recorded = read_trajectory_start(&spec.name, scene, table, &name)?;
     let replayed = spec.record(scene, DEFAULT_DT)?;
     let found = replay(scene, &recorded, &replayed);
     match args.format {
-        Format::Json => say(serde_json::to_string_pretty(&found)?)?,
+        Format::Json => say_json(&found)?,
         Format::Text | Format::Junit => say(format_args!(
             "{} on {}: {}",
             spec.name,
@@ -246,7 +262,7 @@ fn store(cases: &[Case], candidates: &[Candidate], library: &Library, args: &Arg
         })
         .collect::<Result<Vec<Blessing>>>()?;
     bar.finish_and_clear();
-    say(blessing_text(&blessings).trim_end())?;
+    say_lines(blessing_text(&blessings).trim_end())?;
     let wider = blessings
         .iter()
         .filter(|blessing| blessing.widens())

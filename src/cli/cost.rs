@@ -2,17 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{LibraryArgs, chosen};
+use super::args::{LibraryArgs, ReplaceArgs, chosen};
 use super::bodies::BodiesArgs;
 use super::output::{progress, say, warn};
 use super::studies::{COST_OPTIONS, Order};
 use crate::case::{Library, scene_or_case};
 use crate::engine::{EngineKind, EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::report::{CostReport, Folder};
+use crate::report::{CostReport, Folder, Output, claim_cost};
 use crate::scene::Scene;
-use crate::study::Timing;
 use crate::study::cost::{CostOptions, PHASES_MIN, Stage, Tuning, scene_cost, tune};
+use crate::study::{BUDGET_MAX, PHASES_MAX, REPETITIONS_MAX, RUNS_MAX, Timing};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -30,6 +30,8 @@ pub(super) struct Args {
     /// Folder for the files [default: runs/cost, or runs/bodies with --bodies]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Seed of the order of runs and of the intervals
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -113,19 +115,28 @@ fn tuned(
 
 /// Numbers that no study can be made with.
 fn check(args: &Args) -> Result<()> {
-    let phases = format!("give at least {PHASES_MIN}: fewer have no scatter to speak of");
-    let above_zero = || "give a number above 0".to_owned();
-    for (argument, found, least, remedy) in [
-        ("repetitions", args.repetitions as u64, 1, above_zero()),
-        ("budget", args.budget.unwrap_or(1), 1, above_zero()),
-        ("runs", args.runs as u64, 1, above_zero()),
-        ("phases", args.phases as u64, PHASES_MIN as u64, phases),
+    let count = |count: usize| count as u64;
+    for (argument, found, least, most) in [
+        (
+            "repetitions",
+            count(args.repetitions),
+            1,
+            count(REPETITIONS_MAX),
+        ),
+        ("budget", args.budget.unwrap_or(1), 1, BUDGET_MAX),
+        ("runs", count(args.runs), 1, count(RUNS_MAX)),
+        (
+            "phases",
+            count(args.phases),
+            count(PHASES_MIN),
+            count(PHASES_MAX),
+        ),
     ] {
-        if found < least {
+        if !(least..=most).contains(&found) {
             return Err(Error::Argument {
                 argument,
                 found: found.to_string(),
-                remedy,
+                remedy: format!("give {least} to {most}"),
             });
         }
     }
@@ -146,9 +157,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     if !args.bodies.sizes.is_empty() {
         let out = out("bodies");
-        return args
-            .bodies
-            .run(&specs, timing, args.budget, &out, args.quiet);
+        return args.bodies.run(
+            &specs,
+            timing,
+            args.budget,
+            (&out, args.replace.replace()),
+            args.quiet,
+        );
     }
     let library = args.library.library();
     let scenes = read(&args.scenes, &library)?;
@@ -159,13 +174,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
         phases: args.phases,
         runs: args.runs,
     };
+    let out = out("cost");
+    let output = Output::open(&out, args.replace.replace())?;
+    let folder = output.folder();
+    claim_cost(&folder, &scenes.iter().collect::<Vec<_>>())?;
     let tuning = tuned(&tune_on, &scenes, &options, args.quiet)?;
     for family in tuning.iter().flat_map(|tuning| &tuning.families) {
         // In the place of the preset of that name, if it takes part.
         specs.retain(|spec| spec.name != family.spec.name);
         specs.push(family.spec.clone());
     }
-    let folder = Folder::open(&out("cost"))?;
     for scene in &scenes {
         for warning in scene.warnings() {
             warn(format_args!("{}: {warning}", scene.name));
@@ -180,12 +198,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warns: true,
     }
     .measure(&scenes, &folder)?;
+    output.commit()?;
     if args.quiet {
         return Ok(());
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        out.join("README.md").display()
     ))
 }
 
@@ -219,10 +238,10 @@ struct Measuring<'a> {
 }
 
 impl Measuring<'_> {
-    /// Measures scene by scene and writes after each, so that an interrupted study leaves what it
-    /// has found.
+    /// Measures scene by scene and keeps what it has after each, so that an interrupted study
+    /// leaves what it has found.
     fn measure(self, scenes: &[&Scene], folder: &Folder) -> Result<()> {
-        let mut report = CostReport::begin(folder.clone(), self.options, self.tuning);
+        let mut report = CostReport::begin(self.options, self.tuning);
         for (place, scene) in scenes.iter().enumerate() {
             let bar = progress(1, self.quiet);
             let turn = format!("{}/{}", place + 1, scenes.len());
@@ -243,7 +262,8 @@ impl Measuring<'_> {
                 warn(format_args!("{}: {note}", scene.name));
             }
             report.add(cost)?;
+            folder.keep_unfinished(|folder| report.write(folder))?;
         }
-        Ok(())
+        report.write(folder)
     }
 }

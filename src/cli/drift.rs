@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::LibraryArgs;
-use super::output::{progress, say};
+use super::args::{LibraryArgs, ReplaceArgs};
+use super::output::{progress, say, say_json, say_lines};
 use crate::error::Result;
-use crate::report::{Folder, drift_findings, drift_table, write_drift};
+use crate::report::{DRIFT_FILES, Output, drift_findings, drift_table, write_drift};
 use crate::study::drift::{Workers, drift};
 
 #[derive(Debug, clap::Args)]
@@ -21,6 +21,8 @@ pub(super) struct Args {
     /// Folder for the files
     #[arg(long, value_name = "DIR", default_value = "runs/drift")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -37,7 +39,9 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     };
     let workers = Workers::read(&folder)?;
     let versions = workers.chosen(&args.versions)?;
-    let out = Folder::open(&args.out)?;
+    let output = Output::open(&args.out, args.replace.replace())?;
+    let out = output.folder();
+    out.claim(DRIFT_FILES)?;
     let bar = progress(2 * versions.len(), args.quiet);
     let study = drift(
         &folder,
@@ -50,16 +54,17 @@ pub(super) fn run(args: &Args) -> Result<bool> {
     )?;
     bar.finish_and_clear();
     write_drift(&out, &study)?;
+    output.commit()?;
     if args.json {
-        say(serde_json::to_string_pretty(&study)?)?;
+        say_json(&study)?;
     } else if !args.quiet {
-        say(drift_table(&study))?;
+        say_lines(drift_table(&study))?;
         for finding in drift_findings(&study) {
             say(finding)?;
         }
         say(format_args!(
             "Written to {}",
-            out.path().join("README.md").display()
+            args.out.join("README.md").display()
         ))?;
     }
     Ok(study.holds())

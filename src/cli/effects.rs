@@ -2,15 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::args::{EngineArgs, LibraryArgs};
-use super::output::{say, spinner, warn};
+use super::args::{EngineArgs, LibraryArgs, ReplaceArgs};
+use super::output::{say, say_json, say_lines, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::{Error, Result};
-use crate::report::{Folder, effects_findings, effects_table, write_effects};
-use crate::study::{Change, Timing, effects};
-
-/// Repetitions beyond this are a slip of the pen.
-const REPETITIONS_MAX: usize = 10_000;
+use crate::report::{EFFECTS_FILES, Output, effects_findings, effects_table, write_effects};
+use crate::study::{Change, REPETITIONS_MAX, Timing, effects, fits};
 
 /// The engines unless others are asked for; the exact ones may take long, once for each effect.
 const DEFAULT: [&str; 4] = ["lecture", "rapier", "rapier-f64", "rapier-matched"];
@@ -32,6 +29,8 @@ pub(super) struct Args {
     /// Folder for the files [default: runs/effects-<scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -59,7 +58,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(scene, &specs)?;
-    let folder = Folder::open(&out)?;
+    fits(scene, specs.len())?;
+    let output = Output::open(&out, args.replace.replace())?;
+    let folder = output.folder();
+    folder.claim(EFFECTS_FILES)?;
     let bar = spinner(&scene.name, args.quiet);
     let timing = Timing {
         seed: args.seed,
@@ -67,6 +69,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let study = effects(scene, &specs, args.engines.dt, timing)?;
     write_effects(&folder, &study)?;
+    output.commit()?;
     bar.finish_and_clear();
     let unchanged = study
         .rows
@@ -79,14 +82,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&study)?);
+        return say_json(&study);
     }
-    say(effects_table(&study))?;
+    say_lines(effects_table(&study))?;
     for finding in effects_findings(&study) {
         say(finding)?;
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        out.join("README.md").display()
     ))
 }

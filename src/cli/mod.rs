@@ -9,15 +9,16 @@ mod drift;
 mod effects;
 mod output;
 mod plan;
+mod refusals;
 mod report;
 mod run;
 mod scenes;
 mod stability;
 mod studies;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Runs a lecture's impulse solver and Rapier side by side on the same scenes: how far do they
 /// part, why, and at what price?
@@ -60,8 +61,10 @@ enum Command {
 /// run, with one line.
 #[must_use]
 pub fn main() -> std::process::ExitCode {
-    let cli = Cli::parse();
-    let done = output::tidy_up_on_interrupt().and_then(|()| dispatch(cli.command));
+    let done = parsed().and_then(|cli| {
+        output::tidy_up_on_interrupt()?;
+        dispatch(cli.command)
+    });
     match done {
         Ok(true) => std::process::ExitCode::SUCCESS,
         Ok(false) => std::process::ExitCode::from(1),
@@ -70,6 +73,50 @@ pub fn main() -> std::process::ExitCode {
             std::process::ExitCode::from(2)
         }
     }
+}
+
+/// What the command line says; help and version are printed here, and end the program.
+fn parsed() -> Result<Cli> {
+    let mut command = Cli::command();
+    command.build();
+    let matches = command
+        .clone()
+        .try_get_matches()
+        .map_err(|wrong| refused(&wrong))?;
+    refusals::refuse_idle(&matches, &command)?;
+    Cli::from_arg_matches(&matches).map_err(|wrong| refused(&wrong))
+}
+
+/// What clap says of a command line that it does not take, in one line.
+fn refused(wrong: &clap::Error) -> Error {
+    use clap::error::ErrorKind::{
+        DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
+    };
+    let kind = wrong.kind();
+    if [
+        DisplayHelp,
+        DisplayHelpOnMissingArgumentOrSubcommand,
+        DisplayVersion,
+    ]
+    .contains(&kind)
+    {
+        // Nothing of the user's stands in it.
+        wrong.exit();
+    }
+    let text = wrong.render().to_string();
+    let (what, rest) = text.split_once("\n\nUsage: ").unwrap_or((&text, ""));
+    let what = what.strip_prefix("error: ").unwrap_or(what);
+    let what = what
+        .split_once("\n\nFor more information")
+        .map_or(what, |(what, _)| what);
+    let words: Vec<&str> = what.split_whitespace().collect();
+    let what = words.join(" ").replace(" tip: ", "; ");
+    let usage = rest.lines().next().unwrap_or_default();
+    let message = match usage {
+        "" => format!("{what}; --help shows what there is"),
+        usage => format!("{what}; usage: {usage}"),
+    };
+    Error::Usage { message }
 }
 
 /// Whether all that was to be checked holds.

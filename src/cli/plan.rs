@@ -5,10 +5,10 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::args::{EngineArgs, LibraryArgs, REPORTED};
-use super::output::say;
+use super::output::{say, say_json, say_lines};
 use crate::case::scene_or_case;
 use crate::engine::{EngineSpec, Plan, notes, plan};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless, number};
 use crate::scene::Scene;
 use crate::study::Refusal;
 
@@ -34,13 +34,15 @@ pub(super) fn run(args: &Args) -> Result<()> {
         .map(|spec| Row::of(&case.scene, spec, args.engines.dt))
         .collect::<Result<Vec<_>>>()?;
     if args.json {
-        return say(serde_json::to_string_pretty(&plans)?);
+        return say_json(&plans);
     }
     for (row, spec) in plans.iter().zip(&specs) {
         match row {
-            Row::Plan(plan) => say(in_words(plan, &notes(&case.scene, spec)))?,
+            Row::Plan(plan) => say_lines(in_words(plan, &notes(&case.scene, spec)))?,
             Row::Refusal(Refusal { engine, reason }) => {
-                say(format_args!("{engine}\n      * {reason}\n"))?;
+                say(engine)?;
+                say(format_args!("      * {reason}"))?;
+                say("")?;
             }
         }
     }
@@ -69,10 +71,11 @@ impl Row {
 }
 
 fn in_words(plan: &Plan, notes: &[String]) -> String {
-    let step = plan
-        .step
-        .map_or_else(|| "no step".to_owned(), |step| format!("step {step} s"));
-    let mut text = format!("{}, {step}\n", plan.engine);
+    let step = plan.step.map_or_else(
+        || "no step".to_owned(),
+        |step| format!("step {} s", number(step)),
+    );
+    let mut text = format!("{}, {step}\n", harmless(&plan.engine));
     for (number, phase) in plan.phases.iter().enumerate() {
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -84,7 +87,7 @@ fn in_words(plan: &Plan, notes: &[String]) -> String {
         );
     }
     for note in notes {
-        let _ = writeln!(text, "      * {note}");
+        let _ = writeln!(text, "      * {}", harmless(note));
     }
     text
 }

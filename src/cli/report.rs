@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 
-use super::args::{EngineArgs, LibraryArgs, REPORTED};
+use super::args::{EngineArgs, LibraryArgs, REPORTED, ReplaceArgs};
 use super::output::{progress, say, warn};
 use super::studies::{self, Order};
 use crate::case::{self, Case};
 use crate::engine::EngineSpec;
 use crate::error::{Error, Result};
-use crate::report::{Folder, Place, Studies, write_comparison, write_index};
-use crate::study::{Summary, side_by_side};
+use crate::report::{
+    Folder, INDEX_FILES, Output, Place, Studies, claim_comparison, write_comparison, write_index,
+};
+use crate::study::{Summary, fits, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -28,6 +30,8 @@ pub(super) struct Args {
     /// Folder for the report
     #[arg(long, value_name = "DIR", default_value = "reports")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -49,13 +53,22 @@ pub(super) fn run(args: &Args) -> Result<()> {
             Err(error) => return Err(error),
         }
     }
-    let folder = Folder::open(&args.out)?;
-    // Until the new index stands, none tells of cases that are no longer as it says.
-    folder.remove(|name| ["README.md", "summary.json"].contains(&name))?;
+    for case in &cases {
+        fits(&case.scene, specs.len() + usize::from(case.truth.is_some()))?;
+    }
+    let output = Output::open(&args.out, args.replace.replace())?;
+    let folder = output.folder();
+    folder.claim(INDEX_FILES)?;
+    for case in &cases {
+        claim_comparison(&folder.folder(&case.scene.name), &specs)?;
+    }
     for case in &cases {
         for warning in case.scene.warnings() {
             warn(format_args!("{}: {warning}", case.scene.name));
         }
+    }
+    for study in &asked {
+        study.claim(&folder, &scenes)?;
     }
     for study in asked {
         study.make(&Order {
@@ -71,6 +84,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     let summaries = compare(args, &cases, &specs, &folder, &studies)?;
     write_index(&folder, &summaries, &specs, dt, &studies)?;
+    output.commit()?;
     for summary in &summaries {
         for voice in summary
             .voices
@@ -90,7 +104,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         "{} on {}: {}",
         counted(summaries.len(), "case"),
         counted(specs.len(), "engine"),
-        folder.path().join("README.md").display()
+        args.out.join("README.md").display()
     ))
 }
 
@@ -124,7 +138,7 @@ fn compare(
     let compared = cases.par_iter().map(|case| {
         bar.set_message(case.scene.name.clone());
         let comparison = side_by_side(case, specs, args.engines.dt)?;
-        let own = folder.folder(&case.scene.name)?;
+        let own = folder.folder(&case.scene.name);
         let summary = write_comparison(&own, &comparison, Place::InReport(studies))?;
         bar.inc(1);
         Ok(summary)

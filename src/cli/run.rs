@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::args::{EngineArgs, LibraryArgs};
-use super::output::{say, spinner, warn};
+use super::args::{EngineArgs, LibraryArgs, ReplaceArgs};
+use super::output::{say, say_json, spinner, warn};
 use crate::case::scene_or_case;
 use crate::error::Result;
-use crate::report::{Folder, Place, findings, write_comparison};
-use crate::study::side_by_side;
+use crate::report::{Output, Place, claim_comparison, findings, write_comparison};
+use crate::study::{fits, side_by_side};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -20,6 +20,8 @@ pub(super) struct Args {
     /// Folder for the files [default: runs/<scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -39,10 +41,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
         warn(warning);
     }
     args.engines.prepare(&case.scene, &specs)?;
-    let folder = Folder::open(&out)?;
+    fits(&case.scene, specs.len() + usize::from(case.truth.is_some()))?;
+    let output = Output::open(&out, args.replace.replace())?;
+    let folder = output.folder();
+    claim_comparison(&folder, &specs)?;
     let bar = spinner(&case.scene.name, args.quiet);
     let comparison = side_by_side(&case, &specs, args.engines.dt)?;
     let summary = write_comparison(&folder, &comparison, Place::Alone)?;
+    output.commit()?;
     bar.finish_and_clear();
     for voice in summary
         .voices
@@ -55,7 +61,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
     let names: Vec<_> = summary
         .voices
@@ -67,6 +73,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        out.join("README.md").display()
     ))
 }

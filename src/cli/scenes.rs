@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 
 use super::args::LibraryArgs;
-use super::output::say;
+use super::output::{say, say_json, say_lines};
 use crate::case::{Evidence, Library, scene_text};
 use crate::error::{Error, Result};
-use crate::report::Folder;
+use crate::report::write_file;
+use crate::scene::check::check_scene_name;
 use crate::scene::generate::{Cluster, Gas, Rack};
 use crate::scene::{Scene, parse, to_toml};
 
@@ -73,7 +74,7 @@ enum Recipe {
         #[arg(long, default_value_t = Cluster::default().count)]
         count: usize,
         /// Radius of the ball that holds their centres, m
-        #[arg(long, default_value_t = Cluster::default().extent)]
+        #[arg(long, default_value_t = Cluster::default().extent, allow_negative_numbers = true)]
         extent: f64,
         /// Seed of the random numbers
         #[arg(long, default_value_t = Cluster::default().seed)]
@@ -87,10 +88,10 @@ enum Recipe {
         #[arg(long, default_value_t = Rack::default().rows)]
         rows: usize,
         /// Free distance between neighbours, mm
-        #[arg(long, default_value_t = Rack::default().gap)]
+        #[arg(long, default_value_t = Rack::default().gap, allow_negative_numbers = true)]
         gap: f64,
         /// Each ball is moved by up to this much, mm
-        #[arg(long, default_value_t = Rack::default().jitter)]
+        #[arg(long, default_value_t = Rack::default().jitter, allow_negative_numbers = true)]
         jitter: f64,
         /// Seed of the jitter
         #[arg(long, default_value_t = Rack::default().seed)]
@@ -107,7 +108,7 @@ enum Recipe {
         #[arg(long, conflicts_with = "cells")]
         count: Option<usize>,
         /// Filling fraction
-        #[arg(long, default_value_t = Gas::default().filling)]
+        #[arg(long, default_value_t = Gas::default().filling, allow_negative_numbers = true)]
         filling: f64,
         /// Seed of the velocities
         #[arg(long, default_value_t = Gas::default().seed)]
@@ -123,8 +124,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
             hard: true, json, ..
         } => list(&Library::hard(), *json),
         What::List { library, json, .. } => list(&library.library(), *json),
-        What::Show { case, library } => say(scene_text(case, &library.library())?.trim_end()),
+        What::Show { case, library } => say_lines(scene_text(case, &library.library())?.trim_end()),
         What::New { name, out } => {
+            check_scene_name(name).map_err(|wrong| Error::Scene {
+                scene: name.clone(),
+                message: wrong.to_string(),
+            })?;
             let text = STARTER.replacen("my-scene", name, 1);
             parse(&text, "the new scene")?;
             let file = out
@@ -166,7 +171,7 @@ fn list(library: &Library, json: bool) -> Result<()> {
         })
         .collect::<Result<Vec<_>>>()?;
     if json {
-        return say(serde_json::to_string_pretty(&listed)?);
+        return say_json(&listed);
     }
     let widest = listed.iter().map(|row| row.name.len()).max().unwrap_or(0);
     for row in &listed {
@@ -236,29 +241,19 @@ fn generate(recipe: &Recipe) -> Result<()> {
     };
     let text = to_toml(&scene)?;
     let Some(file) = &out.out else {
-        return say(text.trim_end());
+        return say_lines(text.trim_end());
     };
     write(file, out.force, &text)
 }
 
 /// Writes a scene file, but never over another one without being told to.
 fn write(file: &Path, force: bool, text: &str) -> Result<()> {
-    let name = file.file_name().filter(|_| !file.is_dir());
-    let Some(name) = name.and_then(|name| name.to_str()) else {
+    if file.is_dir() || file.file_name().is_none() {
         return Err(Error::Argument {
             argument: "out",
             found: file.display().to_string(),
             remedy: "that is a folder; name a file in it".into(),
         });
-    };
-    if file.exists() && !force {
-        return Err(Error::Exists {
-            path: file.to_owned(),
-        });
     }
-    let folder = file
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    Folder::open(folder.unwrap_or(Path::new(".")))?
-        .write(name, |out| out.write_all(text.as_bytes()))
+    write_file(file, force, text.as_bytes())
 }

@@ -2,13 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::args::chosen;
-use super::output::{progress, say};
+use super::args::{ReplaceArgs, chosen};
+use super::output::{progress, say, say_json, say_lines};
 use super::studies::Order;
 use crate::case::Library;
 use crate::engine::{EngineSpec, engines};
 use crate::error::{Error, Result};
-use crate::report::{Folder, stability_findings, stability_table, write_stability};
+use crate::report::{
+    Folder, Output, STABILITY_FILES, stability_findings, stability_table, write_stability,
+};
+use crate::study::BUDGET_MAX;
 use crate::study::stability::{
     Bounded, MapKind, StabilityStudy, StabilitySummary, stability, stability_map,
 };
@@ -38,6 +41,8 @@ pub(super) struct Args {
     /// Folder for the files
     #[arg(long, value_name = "DIR", default_value = "runs/stability")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: ReplaceArgs,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     quiet: bool,
@@ -95,7 +100,7 @@ fn make(
     let study = stability(cases, specs, budget, &|case, done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-        bar.set_message(case.to_owned());
+        bar.set_message(case);
     })?;
     bar.set_message("maps");
     let mapped = specs
@@ -111,11 +116,11 @@ fn make(
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    if args.budget == 0 {
+    if !(1..=BUDGET_MAX).contains(&args.budget) {
         return Err(Error::Argument {
             argument: "budget",
-            found: "0".into(),
-            remedy: "give a number above 0".into(),
+            found: args.budget.to_string(),
+            remedy: format!("give 1 to {BUDGET_MAX}"),
         });
     }
     let specs = specs(&args.names)?;
@@ -124,7 +129,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         None => Library::hard(),
     };
     let cases = cases(&args.cases, &library)?;
-    let folder = Folder::open(&args.out)?;
+    let output = Output::open(&args.out, args.replace.replace())?;
+    let folder = output.folder();
+    folder.claim(STABILITY_FILES)?;
     // Whoever asks for some cases asks for those.
     let maps = if args.cases.is_empty() {
         &MAPS[..]
@@ -132,19 +139,20 @@ pub(super) fn run(args: &Args) -> Result<()> {
         &[]
     };
     let (study, summary) = make(&cases, &specs, args.budget, &folder, maps, args.quiet)?;
+    output.commit()?;
     if args.quiet {
         return Ok(());
     }
     if args.json {
-        return say(serde_json::to_string_pretty(&summary)?);
+        return say_json(&summary);
     }
-    say(stability_table(&summary))?;
+    say_lines(stability_table(&summary))?;
     for finding in stability_findings(&study, &summary) {
         say(finding)?;
     }
     say(format_args!(
         "Written to {}",
-        folder.path().join("README.md").display()
+        args.out.join("README.md").display()
     ))
 }
 

@@ -3,7 +3,7 @@
 use super::{cost, stability};
 use crate::engine::EngineSpec;
 use crate::error::{Error, Result};
-use crate::report::{COST, Folder, STABILITY};
+use crate::report::{COST, Folder, STABILITY, STABILITY_FILES, claim_cost};
 use crate::scene::Scene;
 use crate::study::Timing;
 use crate::study::cost::CostOptions;
@@ -15,7 +15,7 @@ pub(super) struct Order<'a> {
     /// The engines asked for by name; none for those that the study takes by itself.
     pub engines: Option<&'a [EngineSpec]>,
     /// Where the report goes.
-    pub report: &'a Folder,
+    pub report: &'a Folder<'a>,
     /// Whether no progress is shown.
     pub quiet: bool,
 }
@@ -23,16 +23,20 @@ pub(super) struct Order<'a> {
 /// A study that a report can hold: its name is that of its folder.
 pub(super) struct Study {
     name: &'static str,
+    /// Sees that its files may be written, before anything runs.
+    claim: fn(&Folder, &[&Scene]) -> Result<()>,
     make: fn(&Order, &Folder) -> Result<()>,
 }
 
 const STUDIES: [Study; 2] = [
     Study {
         name: COST,
+        claim: claim_cost,
         make: cost::beside_report,
     },
     Study {
         name: STABILITY,
+        claim: |folder, _| folder.claim(STABILITY_FILES),
         make: stability::beside_report,
     },
 ];
@@ -74,9 +78,14 @@ pub(super) fn asked(names: &[String], scenes: &[&Scene]) -> Result<Vec<&'static 
 }
 
 impl Study {
+    /// Sees that the study's files may be written into its folder within the report.
+    pub fn claim(&self, report: &Folder, scenes: &[&Scene]) -> Result<()> {
+        (self.claim)(&report.folder(self.name), scenes)
+    }
+
     /// Makes the study and leaves its files in a folder of its own within the report.
     pub fn make(&self, order: &Order) -> Result<()> {
-        (self.make)(order, &order.report.folder(self.name)?)
+        (self.make)(order, &order.report.folder(self.name))
     }
 }
 

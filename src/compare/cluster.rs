@@ -180,6 +180,7 @@ mod tests {
             length: 1.0,
             energy: 1.0,
             momentum: 1.0,
+            angular_momentum: 1.0,
         };
         cluster_facts(scene, &both, &one)
     }

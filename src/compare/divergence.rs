@@ -78,18 +78,6 @@ impl Divergence {
         }
     }
 
-    /// Every pair of recordings, in order.
-    #[must_use]
-    pub fn every_pair(scene: &Scene, recordings: &[Recording]) -> Vec<Self> {
-        let with_later = |(place, a): (usize, &Recording)| -> Vec<Self> {
-            recordings[place + 1..]
-                .iter()
-                .map(|b| Self::between(scene, a, b))
-                .collect()
-        };
-        recordings.iter().enumerate().flat_map(with_later).collect()
-    }
-
     /// The comparable sample at which one body is farthest apart; the first of equals.
     #[must_use]
     pub fn largest(&self) -> DivergenceSample {

@@ -47,6 +47,10 @@ pub trait Simulation {
     /// Work counted so far.
     fn work(&self) -> Work;
 
+    /// Bounds the counted work, if the engine can: past it, the present step ends, and what it
+    /// computes is given up as [`Outcome::BudgetSpent`].
+    fn limit(&mut self, _budget: u64) {}
+
     /// Starts to book what each phase takes and gives; whether the engine can. Until then nothing
     /// is booked, at no cost.
     fn keep_ledger(&mut self) -> bool {

@@ -15,8 +15,9 @@ pub fn record(scene: &Scene, spec: &EngineSpec, dt: f64) -> Result<Recording> {
     record_within(scene, spec, dt, u64::MAX)
 }
 
-/// The same with a bound on the counted work: past it, at the next sample, the recording ends as
-/// [`Outcome::BudgetSpent`]. The engine `exact` has a bound of its own.
+/// The same with a bound on the counted work: past it the recording ends as
+/// [`Outcome::BudgetSpent`], of the hand-written engines within the step, of the others at the next
+/// sample. The engine `exact` has a bound of its own.
 ///
 /// # Errors
 /// As [`record`].
@@ -62,6 +63,7 @@ fn drive_within(
 ) -> Recording {
     let mut recording = Recording::at_start(voice, scene);
     let mut states = initial_states(scene);
+    simulation.limit(budget);
     for sample in 1..=last {
         let halt = simulation.advance_to(sample, Some(&mut recording.events));
         simulation.state_into(&mut states);

@@ -1,5 +1,6 @@
 //! Which of several contacts press: a linear complementarity problem.
 
+use super::Meter;
 use super::cholesky::Cholesky;
 
 /// Below this share of the largest rate, a rate is that of a contact that stays closed.
@@ -22,11 +23,17 @@ pub enum Role {
 /// `matrix(i, j)` symmetric and positive semi-definite. `warm` is a guess of the answer. It is
 /// the minimum of `f.A f/2 + b.f` over `f >= 0`, found by the active-set method for
 /// non-negative least squares: finite, since each round lowers the minimum. A contact that joins
-/// costs the square of their number, one that leaves at most the cube.
+/// costs the square of their number, one that leaves at most the cube; `meter` counts that, and
+/// once it is spent the search ends with forces that solve nothing yet.
 /// Source: Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23.
 #[must_use]
-pub fn pressing(matrix: &dyn Fn(usize, usize) -> f64, rates: &[f64], warm: &[bool]) -> Vec<Role> {
-    let mut active = Active::solved(matrix, rates, warm);
+pub fn pressing(
+    matrix: &impl Fn(usize, usize) -> f64,
+    rates: &[f64],
+    warm: &[bool],
+    meter: &mut Meter,
+) -> Vec<Role> {
+    let mut active = Active::solved(matrix, rates, warm, meter);
     let closed = CLOSED * scale(rates);
     let role = |index: usize| {
         if active.pressed.contains(&index) {
@@ -43,8 +50,13 @@ pub fn pressing(matrix: &dyn Fn(usize, usize) -> f64, rates: &[f64], warm: &[boo
 /// The forces of the same problem; where they are not unique, some that solve it: the rates that
 /// come of them are unique.
 #[must_use]
-pub fn pushes(matrix: &dyn Fn(usize, usize) -> f64, rates: &[f64], warm: &[bool]) -> Vec<f64> {
-    Active::solved(matrix, rates, warm).forces
+pub fn pushes(
+    matrix: &impl Fn(usize, usize) -> f64,
+    rates: &[f64],
+    warm: &[bool],
+    meter: &mut Meter,
+) -> Vec<f64> {
+    Active::solved(matrix, rates, warm, meter).forces
 }
 
 fn scale(rates: &[f64]) -> f64 {
@@ -53,17 +65,18 @@ fn scale(rates: &[f64]) -> f64 {
 }
 
 /// The contacts taken to press, with the factor of their matrix.
-struct Active<'a> {
-    matrix: &'a dyn Fn(usize, usize) -> f64,
+struct Active<'a, M> {
+    matrix: &'a M,
     rates: &'a [f64],
     forces: Vec<f64>,
     pressed: Vec<usize>,
     factor: Cholesky<f64>,
+    meter: &'a mut Meter,
 }
 
-impl<'a> Active<'a> {
+impl<'a, M: Fn(usize, usize) -> f64> Active<'a, M> {
     /// Adds the worst that would close, until none would.
-    fn solved(matrix: &'a dyn Fn(usize, usize) -> f64, rates: &'a [f64], warm: &[bool]) -> Self {
+    fn solved(matrix: &'a M, rates: &'a [f64], warm: &[bool], meter: &'a mut Meter) -> Self {
         let count = rates.len();
         let tolerance = 1e-13 * scale(rates);
         let mut active = Self {
@@ -72,6 +85,7 @@ impl<'a> Active<'a> {
             forces: vec![0.0; count],
             pressed: Vec::new(),
             factor: Cholesky::empty(),
+            meter,
         };
         for index in (0..count).filter(|index| warm[*index]) {
             // One that depends on the others is no loss to a guess.
@@ -81,6 +95,11 @@ impl<'a> Active<'a> {
         // The method is finite; the bound only guards against rounding that makes it cycle.
         for _ in 0..20 * count + 20 {
             active.relax();
+            if active.meter.is_spent() {
+                break;
+            }
+            let rates = count.saturating_sub(active.pressed.len());
+            active.count(3 * rates * active.pressed.len() + count);
             let free = |i: &usize| !dependent[*i] && !active.pressed.contains(i);
             let worst = (0..count)
                 .filter(free)
@@ -102,8 +121,14 @@ impl<'a> Active<'a> {
         active
     }
 
+    fn count(&mut self, operations: usize) {
+        self.meter.add(operations as u64);
+    }
+
     /// Takes it to press; whether it is independent of the others, else it is not taken.
     fn add(&mut self, index: usize) -> bool {
+        let size = self.pressed.len();
+        self.count(size * size / 2 + 8 * size + 50);
         let (matrix, pressed) = (self.matrix, &self.pressed);
         let entry = |j: usize| matrix(index, *pressed.get(j).unwrap_or(&index));
         let grown = self.factor.grow(entry).is_ok();
@@ -133,7 +158,9 @@ impl<'a> Active<'a> {
 
     /// Forces that stop the pressed ones; those that would have to pull are let go, one by one.
     fn relax(&mut self) {
-        loop {
+        while !self.meter.is_spent() {
+            let size = self.pressed.len();
+            self.count(size * size + 12 * size + 100);
             let mut wanted: Vec<f64> = self.pressed.iter().map(|i| -self.rates[*i]).collect();
             self.factor.solve(&mut wanted);
             // How far towards the wanted forces before each of them vanishes.
@@ -186,7 +213,10 @@ mod tests {
             ([-1.0, 0.4], [false, false], [pressed, pressed]),
             ([1.0, 1.0], [true, false], [free, free]),
         ] {
-            assert_eq!(pressing(&matrix, &rates, &warm), roles.to_vec());
+            assert_eq!(
+                pressing(&matrix, &rates, &warm, &mut Meter::default()),
+                roles.to_vec()
+            );
         }
     }
 
@@ -202,7 +232,7 @@ mod tests {
         let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
         let matrix = |i: usize, j: usize| product(legs[i], legs[j]);
         for warm in [[false; 4], [true; 4]] {
-            let roles = pressing(&matrix, &[-1.0; 4], &warm);
+            let roles = pressing(&matrix, &[-1.0; 4], &warm, &mut Meter::default());
             let pressed = roles.iter().filter(|role| **role == Role::Pressed).count();
             assert!((2..4).contains(&pressed), "{roles:?}");
         }
@@ -220,13 +250,18 @@ mod tests {
             (-1.0 + 1e-8, Role::Free),
         ] {
             for (warm, scale) in [([false; 2], 1.0), ([true, false], 1.0), ([false; 2], 1e3)] {
-                let roles = pressing(&matrix, &[-scale, second * scale], &warm);
+                let roles = pressing(
+                    &matrix,
+                    &[-scale, second * scale],
+                    &warm,
+                    &mut Meter::default(),
+                );
                 assert_eq!(roles, [Role::Pressed, role], "{second} {scale}");
             }
         }
         // One of its own rests on nothing, however slow.
         let beside = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        let roles = pressing(&beside, &[-1.0, 0.0], &[false; 2]);
+        let roles = pressing(&beside, &[-1.0, 0.0], &[false; 2], &mut Meter::default());
         assert_eq!(roles, [Role::Pressed, Role::Free]);
     }
 
@@ -251,7 +286,7 @@ mod tests {
             let velocity = [random() - 0.3, random(), random()];
             let rates: Vec<f64> = arms.iter().map(|arm| product(*arm, velocity)).collect();
             let warm: Vec<bool> = (0..count).map(|_| random() > 0.0).collect();
-            let forces = pushes(&matrix, &rates, &warm);
+            let forces = pushes(&matrix, &rates, &warm, &mut Meter::default());
             for i in 0..count {
                 let rate = rates[i] + (0..count).map(|j| matrix(i, j) * forces[j]).sum::<f64>();
                 // Pivots down to 1e-11 of a diagonal near 1: the forces lose that many digits.
@@ -262,6 +297,50 @@ mod tests {
             }
         }
         assert!(pressed > 500 && opened > 500, "{pressed} {opened}");
+    }
+
+    /// The meter counts what the search costs: every entry that is read enters one product, the
+    /// factor takes about as many products again. It ends the search soon after it is spent.
+    #[test]
+    fn what_the_search_costs_is_counted_and_bounds_it() {
+        let mut seed = 7_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1_u32 << 24) - 0.5
+        };
+        for count in [4_usize, 16, 48] {
+            let arms: Vec<Vec<f64>> = (0..count)
+                .map(|_| (0..count / 2).map(|_| random()).collect())
+                .collect();
+            let rates: Vec<f64> = (0..count).map(|_| random() - 0.2).collect();
+            let search = |meter: &mut Meter| {
+                let reads = std::cell::Cell::new(0_u64);
+                let matrix = |i: usize, j: usize| {
+                    reads.set(reads.get() + 1);
+                    arms[i]
+                        .iter()
+                        .zip(&arms[j])
+                        .map(|(a, b)| a * b)
+                        .sum::<f64>()
+                };
+                let forces = pushes(&matrix, &rates, &vec![true; count], meter);
+                assert!(forces.iter().all(|force| *force >= 0.0));
+                reads.get()
+            };
+            let mut meter = Meter::default();
+            let reads = search(&mut meter);
+            let done = meter.done();
+            // Overheads of some fifty operations a row are most of a small one.
+            assert!(
+                reads <= done && done <= 60 * reads,
+                "{count}: {reads} {done}"
+            );
+            let mut bounded = Meter::limited(done / 3);
+            assert!(search(&mut bounded) < reads, "{count}");
+            // One row, one solution or one look at all rates past the bound, at the most.
+            let square = (count * count) as u64;
+            assert!(bounded.done() <= done / 3 + 4 * square + 500, "{count}");
+        }
     }
 
     /// Once nothing closes the search ends, whatever rests, opens or depends on the others: it
@@ -286,7 +365,10 @@ mod tests {
             (&same, [-1.0, -1.9], [0.0, 0.475]),
         ] {
             calls.set(0);
-            assert_eq!(pushes(matrix, &rates, &[false; 2]), expected);
+            assert_eq!(
+                pushes(&matrix, &rates, &[false; 2], &mut Meter::default()),
+                expected
+            );
             assert!(calls.get() < 20, "{} for {rates:?}", calls.get());
         }
     }

@@ -28,6 +28,9 @@ pub enum ConcessionKind {
     /// No pushes were found that keep surfaces in touch: they part or sink in by more than what
     /// counts as touching.
     Loose,
+    /// A sample breaks a law of the model by more than the digits that were certified allow: from
+    /// there on none are claimed.
+    BrokenLaw,
 }
 
 impl fmt::Display for Concession {
@@ -37,6 +40,10 @@ impl fmt::Display for Concession {
             ConcessionKind::TurnedBack => "steps whose forces lead nowhere, turned back",
             ConcessionKind::CutShort => "instants of endless impacts cut short",
             ConcessionKind::Jammed => "overlaps that there is no room to resolve",
+            ConcessionKind::BrokenLaw => {
+                "samples at the end without a digit, the first of which breaks a law of the model \
+                 (no overlap, energy, momentum)"
+            }
             ConcessionKind::Loose => "steps in which surfaces in touch were not kept so",
         };
         write!(f, "{} {what}", self.count)

@@ -5,6 +5,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::bounds::EVENTS_MAX;
+
 /// A wall of the box of cushions, named after the side on which it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the names say it all")]
@@ -140,7 +142,8 @@ const KEPT_PER_INTERVAL: u32 = 32;
 ///
 /// Bodies pressed together collide in every step. Past the 32nd event of the same bodies
 /// between two samples, further ones add their impulse to the 32nd; they are counted in
-/// [`counts`](Self::counts) and in [`merged`](Self::merged) all the same.
+/// [`counts`](Self::counts) and in [`merged`](Self::merged) all the same. So are all past the
+/// millionth, and where none of the same bodies is kept, their impulse is in no other.
 #[derive(Debug, Clone, Default)]
 pub struct EventLog {
     events: Vec<Event>,
@@ -168,6 +171,10 @@ impl EventLog {
             EventKind::Contact { .. } => self.counts.contacts += 1,
             EventKind::Cushion { .. } => self.counts.cushions += 1,
             EventKind::Rest { .. } => self.counts.rests += 1,
+        }
+        if self.events.len() >= EVENTS_MAX {
+            self.merged += 1;
+            return self.prolong(event.kind, event.impulse);
         }
         let latest = self.latest.entry(event.kind).or_default();
         if latest.interval != self.interval {
@@ -290,6 +297,27 @@ mod tests {
         assert_eq!(log.merged(), 10_000 - 32);
         let total: f64 = log.events().iter().map(|event| event.impulse).sum();
         assert_eq!(total, 0.5 * 10_001.0);
+    }
+
+    /// A heap of bodies pressed together has as many kinds of events as it has pairs.
+    #[test]
+    fn memory_does_not_grow_with_pairs_past_a_bound() {
+        let mut log = EventLog::default();
+        for a in 0..1500 {
+            for b in a + 1..1500 {
+                let kind = EventKind::Contact { a, b };
+                let (time, impulse) = (1.0, 0.5);
+                log.push(Event {
+                    time,
+                    kind,
+                    impulse,
+                });
+            }
+        }
+        assert_eq!(log.events().len(), EVENTS_MAX);
+        assert_eq!(log.latest.len(), EVENTS_MAX);
+        assert_eq!(log.counts().contacts, 1_124_250);
+        assert_eq!(log.merged(), 124_250);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! `time,kind,a,b,impulse`: a row an event, read and written as a stream.
 
+use std::collections::HashMap;
 use std::io::{Read, Write};
 
 use super::table::Table;
 use super::{Event, EventKind, EventLog, Wall};
-use crate::error::Result;
+use crate::error::{Result, number, quoted};
 use crate::scene::Scene;
 
 const HEADER: [&str; 5] = ["time", "kind", "a", "b", "impulse"];
@@ -39,12 +40,14 @@ pub fn write_events(
 /// [`Error::Table`](crate::error::Error::Table) with the line, for a wrong header, number, kind or name.
 pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventLog> {
     let mut table = Table::open(input, &HEADER, file)?;
+    let names = scene.bodies.iter().map(|body| body.name.as_str());
+    let indices: HashMap<&str, usize> = names.zip(0..).collect();
     let mut events = Vec::new();
     while table.advance()? {
         let body = |column: usize| {
             let name = table.text(column);
-            let index = scene.body_index(name);
-            index.ok_or_else(|| table.wrong(format!("`{name}` is no body of the scene")))
+            let index = indices.get(name).copied();
+            index.ok_or_else(|| table.wrong(format!("`{}` is no body of the scene", quoted(name))))
         };
         let kind = match table.text(1) {
             "contact" => {
@@ -60,7 +63,7 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
             "cushion" => {
                 let name = table.text(3);
                 let wall = Wall::from_name(name).ok_or_else(|| {
-                    table.wrong(format!("`{name}` is no wall: -x +x -z +z -y +y"))
+                    table.wrong(format!("`{}` is no wall: -x +x -z +z -y +y", quoted(name)))
                 })?;
                 EventKind::Cushion {
                     body: body(2)?,
@@ -69,7 +72,10 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
             }
             "rest" => EventKind::Rest { body: body(2)? },
             other => {
-                let message = format!("kind `{other}`: there are contact, cushion and rest");
+                let message = format!(
+                    "kind `{}`: there are contact, cushion and rest",
+                    quoted(other)
+                );
                 return Err(table.wrong(message));
             }
         };
@@ -79,11 +85,16 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
         let end = scene.duration.max(scene.sample_time(scene.sample_count()));
         if !(latest..=end).contains(&time) {
             return Err(table.wrong(format!(
-                "time {time} s: give the events in order of time, from 0 to {end} s"
+                "time {} s: give the events in order of time, from 0 to {} s",
+                number(time),
+                number(end)
             )));
         }
         if impulse < 0.0 {
-            return Err(table.wrong(format!("impulse {impulse}: give its size, 0 or above")));
+            return Err(table.wrong(format!(
+                "impulse {}: give its size, 0 or above",
+                number(impulse)
+            )));
         }
         events.push(Event {
             time,

@@ -3,9 +3,10 @@
 
 use std::io::Read;
 
-use super::table::{Table, shown};
+use super::bounds::ROWS_AHEAD_MAX;
+use super::table::Table;
 use super::trajectory_csv::{body, is_at, time};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number, quoted};
 use crate::scene::Scene;
 
 /// Names that a message lists, at most.
@@ -27,27 +28,28 @@ pub(super) fn misplaced<R: Read>(
 ) -> Result<Error> {
     let here = table.place();
     if due.sample > scene.sample_count() {
-        let message = format!("goes on past the end, t = {} s", scene.duration);
+        let message = format!("goes on past the end, t = {} s", number(scene.duration));
         return Ok(here.wrong(message));
     }
-    let found_time = time(table)?;
-    let (due_time, due_name) = (scene.sample_time(due.sample), &scene.bodies[due.body].name);
+    let found = time(table)?;
+    let due_name = &scene.bodies[due.body].name;
+    let (found_time, due_time) = (number(found), number(scene.sample_time(due.sample)));
     let Some(found_body) = scene.body_index(body(table)) else {
         let message = format!(
             "body `{}` where `{due_name}` of t = {due_time} s is due: no body is called so; \
              the scene has {}",
-            shown(body(table)),
+            quoted(body(table)),
             names(scene)
         );
         return Ok(here.wrong(message));
     };
     let name = &scene.bodies[found_body].name;
-    let Some(found_sample) = sample_at(scene, found_time) else {
+    let Some(found_sample) = sample_at(scene, found) else {
         let message = format!(
             "time {} s where {due_time} s is due: off the scene's grid, a sample every {} s up to {} s",
-            shown(table.text(0)),
-            scene.sample_every,
-            scene.duration
+            quoted(table.text(0)),
+            number(scene.sample_every),
+            number(scene.duration)
         );
         return Ok(here.wrong(message));
     };
@@ -73,9 +75,12 @@ pub(super) fn misplaced<R: Read>(
     Ok(here.wrong(message))
 }
 
-/// Whether a row stands in what is left of a table. A row that cannot be read ends the search.
+/// Whether a row stands in what follows in a table. A row that cannot be read ends the search.
 fn comes_later<R: Read>(table: &mut Table<'_, R>, scene: &Scene, due: Due) -> bool {
-    while table.advance().unwrap_or(false) {
+    for _ in 0..ROWS_AHEAD_MAX {
+        if !table.advance().unwrap_or(false) {
+            return false;
+        }
         let is_due = body(table) == scene.bodies[due.body].name
             && time(table).is_ok_and(|time| is_at(scene, due.sample, time));
         if is_due {

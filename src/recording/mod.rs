@@ -1,5 +1,6 @@
 //! What an engine produced: states on the scene's time grid, events, work, and how it ended.
 
+mod bounds;
 mod concession;
 mod digest;
 mod digits;
@@ -13,6 +14,8 @@ mod start;
 mod table;
 mod trajectory_csv;
 
+pub(crate) use bounds::EVENTS_BYTES_MAX;
+pub use bounds::{trajectory_bytes, trajectory_bytes_max, trajectory_room};
 pub use concession::{Concession, ConcessionKind};
 pub use digits::{COMPARABLE_DIGITS, Digits, Undetermined};
 pub use event::{Event, EventCounts, EventKind, EventLog, Wall};
@@ -37,15 +40,19 @@ pub struct Work {
     pub pair_tests: u64,
     /// Pair and body forces evaluated, where the engine counts them.
     pub force_evaluations: u64,
+    /// All else that takes time, such as impacts that are solved together, in units of about a
+    /// look at a pair; where the engine counts it.
+    pub solving: u64,
 }
 
 impl Work {
-    /// All of it as one number: steps, looks and evaluations.
+    /// All of it as one number: steps, looks, evaluations and what stands for them.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.steps
             .saturating_add(self.pair_tests)
             .saturating_add(self.force_evaluations)
+            .saturating_add(self.solving)
     }
 }
 
@@ -58,6 +65,7 @@ impl std::ops::Sub for Work {
             steps: self.steps - earlier.steps,
             pair_tests: self.pair_tests - earlier.pair_tests,
             force_evaluations: self.force_evaluations - earlier.force_evaluations,
+            solving: self.solving - earlier.solving,
         }
     }
 }
@@ -116,6 +124,14 @@ impl Recording {
     pub fn push(&mut self, states: &[BodyState]) {
         debug_assert_eq!(states.len(), self.body_count);
         self.states.extend_from_slice(states);
+    }
+
+    /// Puts other states in the place of the start: those after what happens at time 0. Shape of
+    /// `states`: `[body]`.
+    pub fn restart(&mut self, states: &[BodyState]) {
+        for (own, state) in self.states.iter_mut().zip(states) {
+            *own = *state;
+        }
     }
 
     /// How many samples there are, the start included.

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::error::{code, number};
 use crate::physics::BodyState;
 use crate::scene::Scene;
 
@@ -108,23 +109,35 @@ impl Outcome {
         match self {
             Self::Finished => "finished".to_owned(),
             Self::NonFinite { time, body } => format!(
-                "not finite by t = {time} s (`{}`); the recording ends at the last finite sample",
-                scene.bodies[*body].name
+                "not finite by t = {} s ({}); the recording ends at the last finite sample",
+                number(*time),
+                code(&scene.bodies[*body].name)
             ),
             Self::Disabled { time, body } => format!(
-                "`{}` was disabled by the engine at t = {time} s; the recording ends before it",
-                scene.bodies[*body].name
+                "{} was disabled by the engine at t = {} s; the recording ends before it",
+                code(&scene.bodies[*body].name),
+                number(*time)
             ),
             Self::BudgetSpent { time } => {
-                format!("the work allowed was spent at t = {time} s; the recording ends there")
+                format!(
+                    "the work allowed was spent at t = {} s; the recording ends there",
+                    number(*time)
+                )
             }
+            Self::Collapsed {
+                time,
+                a,
+                b: None,
+                reason: CollapseReason::Singularity,
+            } => format!(
+                "the forces on `{}` leave no step at t = {time} s; the recording ends before it",
+                scene.bodies[*a].name
+            ),
             Self::Collapsed { time, a, b, reason } => format!(
-                "{reason} at t = {time} s (`{}` and {}); the recording ends before it",
-                scene.bodies[*a].name,
-                b.map_or("a wall".to_owned(), |b| format!(
-                    "`{}`",
-                    scene.bodies[b].name
-                ))
+                "{reason} at t = {} s ({} and {}); the recording ends before it",
+                number(*time),
+                code(&scene.bodies[*a].name),
+                b.map_or("a wall".to_owned(), |b| code(&scene.bodies[b].name))
             ),
         }
     }

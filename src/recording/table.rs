@@ -1,15 +1,15 @@
 //! Tables read as streams, with a place for every complaint.
 
-use std::io::Read;
+use std::io::{self, Read};
+use std::path::Path;
 
-use crate::error::{Error, Result, harmless};
-
-/// Characters of a foreign text that a message shows, at most.
-const SHOWN_MAX: usize = 80;
+use crate::error::{Error, Result, quoted};
+use crate::input::{RowEnd, Rows};
 
 /// A CSV file that is being read row by row.
 pub(super) struct Table<'a, R> {
-    reader: csv::Reader<R>,
+    reader: csv::Reader<Rows<R>>,
+    row_end: RowEnd,
     header: &'static [&'static str],
     file: &'a str,
     row: csv::StringRecord,
@@ -18,8 +18,10 @@ pub(super) struct Table<'a, R> {
 impl<'a, R: Read> Table<'a, R> {
     /// Opens a table that must have this header; `file` is its name in messages.
     pub fn open(input: R, header: &'static [&'static str], file: &'a str) -> Result<Self> {
+        let (rows, row_end) = Rows::new(input);
         let mut table = Self {
-            reader: csv::Reader::from_reader(input),
+            reader: csv::Reader::from_reader(rows),
+            row_end,
             header,
             file,
             row: csv::StringRecord::new(),
@@ -34,13 +36,14 @@ impl<'a, R: Read> Table<'a, R> {
             format!("nothing is there; the header must be `{due}`")
         } else {
             let found = found.iter().collect::<Vec<_>>().join(",");
-            format!("the header must be `{due}`, not `{}`", shown(&found))
+            format!("the header must be `{due}`, not `{}`", quoted(&found))
         };
         Err(table.at(1).wrong(message))
     }
 
     /// Reads the next row; false at the end of the file.
     pub fn advance(&mut self) -> Result<bool> {
+        self.row_end.tell();
         let read = self.reader.read_record(&mut self.row);
         read.map_err(|wrong| self.unreadable(&wrong))
     }
@@ -58,7 +61,7 @@ impl<'a, R: Read> Table<'a, R> {
             let name = self.header[column];
             self.wrong(format!(
                 "`{name}` is `{}`: not a finite number",
-                shown(text)
+                quoted(text)
             ))
         })
     }
@@ -79,6 +82,10 @@ impl<'a, R: Read> Table<'a, R> {
     }
 
     fn unreadable(&self, wrong: &csv::Error) -> Error {
+        if let csv::ErrorKind::Io(wrong) = wrong.kind() {
+            let wrong = io::Error::new(wrong.kind(), wrong.to_string());
+            return Error::read(Path::new(self.file), wrong);
+        }
         let line = wrong.position().map_or(1, csv::Position::line);
         let message = match wrong.kind() {
             csv::ErrorKind::UnequalLengths {
@@ -112,14 +119,4 @@ impl Place<'_> {
             message,
         }
     }
-}
-
-/// Text of a foreign file as a message shows it: without control characters, and not all of it
-/// where it is long.
-pub(super) fn shown(text: &str) -> String {
-    let mut start: String = text.chars().take(SHOWN_MAX).collect();
-    if start.len() < text.len() {
-        start.push('…');
-    }
-    harmless(&start)
 }

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use super::Recording;
 use super::misplaced::{Due, misplaced};
 use super::table::Table;
-use crate::error::Result;
+use crate::error::{Result, number};
 use crate::physics::{BodyState, Vector3};
 use crate::scene::Scene;
 
@@ -103,13 +103,13 @@ fn read(
              the file is not complete",
             count + 1,
             body.name,
-            scene.sample_time(count)
+            number(scene.sample_time(count))
         )));
     }
     if count < least_samples {
         return Err(table.wrong(format!(
             "ends after {count} of {samples} samples, where t = {} s is due; the file is not complete",
-            scene.sample_time(count)
+            number(scene.sample_time(count))
         )));
     }
     Ok(recording)

@@ -42,6 +42,7 @@ struct VoiceRow {
     rests: u64,
     energy: String,
     momentum: String,
+    angular_momentum: String,
     penetration: String,
     digits: String,
 }
@@ -73,6 +74,7 @@ struct PairRow {
     velocity: String,
     energy: String,
     momentum: String,
+    angular_momentum: String,
     matched: usize,
     impact_time: String,
     impulse: String,
@@ -285,6 +287,11 @@ fn voice_row(summary: &Summary, voice: &VoiceSummary, unit: &str) -> VoiceRow {
     } else {
         "not kept by the model".to_owned()
     };
+    let angular_momentum = if summary.model_conserves_angular_momentum {
+        format!("drift {}", percent(drift.angular_momentum_drift_max))
+    } else {
+        "not kept by the model".to_owned()
+    };
     VoiceRow {
         name: voice.voice.clone(),
         step: voice
@@ -296,6 +303,7 @@ fn voice_row(summary: &Summary, voice: &VoiceSummary, unit: &str) -> VoiceRow {
         rests: voice.events.rests,
         energy,
         momentum,
+        angular_momentum,
         digits: voice.digits_min.map_or("–".into(), |digits| {
             format!("{} / {}", digits.position, digits.velocity)
         }),
@@ -354,6 +362,7 @@ fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
         velocity: with_unit(pair.velocity_divergence_rms_max, &speed),
         energy: percent(pair.energy_difference_max),
         momentum: percent(pair.momentum_difference_max),
+        angular_momentum: percent(pair.angular_momentum_difference_max),
         matched: pair.impacts_matched,
         impact_time: matched(format!(
             "{} s",

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::Folder;
 use super::check::text::in_a_line;
 use super::format::{aligned, engineering};
-use super::output::write_json;
 use super::template::fill;
 use crate::case::Metric;
 use crate::error::Result;
@@ -19,21 +18,18 @@ const TEMPLATE: &str = include_str!("../../templates/drift.md");
 /// What stands in the table where a worker failed; the findings say how, unless it is known to.
 const NOTHING: &str = "no recording";
 
-/// Whether a file is one of an earlier study.
-fn is_stale(name: &str) -> bool {
-    ["README.md", "drift.csv", "summary.json"].contains(&name)
-}
+/// The files of a study.
+pub const DRIFT_FILES: [&str; 3] = ["drift.csv", "README.md", "summary.json"];
 
 /// Writes `drift.csv`, `summary.json` and the page.
 ///
 /// # Errors
-/// A file that cannot be written, with its name; each file is whole or not there.
+/// A file that cannot be written, with its name.
 pub fn write_drift(folder: &Folder, study: &DriftStudy) -> Result<()> {
-    folder.remove(is_stale)?;
     folder.write("drift.csv", |out| write_rows(study, out))?;
-    folder.write("summary.json", |out| write_json(out, study))?;
     let page = fill(TEMPLATE, Page::of(study))?;
-    folder.write("README.md", |out| out.write_all(page.as_bytes()))
+    folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    folder.write_summary(study)
 }
 
 /// A row of `drift.csv`; the names of the fields are the header.

@@ -42,7 +42,10 @@ const HEADER: [&str; 10] = [
     "steps, pairs, forces",
 ];
 
-/// Writes `effects.csv` and `README.md`.
+/// The files of the study of effects.
+pub const EFFECTS_FILES: [&str; 3] = ["effects.csv", "README.md", "summary.json"];
+
+/// Writes `effects.csv`, `README.md` and `summary.json`.
 ///
 /// # Errors
 /// A file that cannot be written, with its name.
@@ -65,7 +68,8 @@ pub fn write_effects(folder: &Folder, study: &EffectStudy) -> Result<()> {
         versions: crate::engine::versions(),
     };
     let page = fill(TEMPLATE, page)?;
-    folder.write("README.md", |out| out.write_all(page.as_bytes()))
+    folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    folder.write_summary(study)
 }
 
 /// What was found, a sentence each.

@@ -1,5 +1,8 @@
 //! Numbers for people.
 
+pub(super) use crate::error::code;
+use crate::error::harmless;
+
 /// Three significant digits, plain between 0.001 and a million, powers of ten outside.
 ///
 /// ```
@@ -56,21 +59,20 @@ pub(super) fn whole_percent(share: f64) -> String {
     format!("{} %", 100.0 * share)
 }
 
-/// A name as code in Markdown; names are free text.
-pub(super) fn code(name: &str) -> String {
-    format!("`{}`", name.replace('`', "'"))
-}
-
 /// Rows of cells for a terminal, each column as wide as its widest cell.
 pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        cells
+            .map(|cell| harmless(cell).chars().count())
+            .max()
+            .unwrap_or(0)
     };
     let widths: Vec<_> = (0..columns).map(width).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths);
+        let cells = cells.map(|(cell, width)| (harmless(cell), width));
         let padded: Vec<_> = cells
             .map(|(cell, width)| format!("{cell:width$}"))
             .collect();

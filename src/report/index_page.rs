@@ -6,9 +6,8 @@ use serde::Serialize;
 
 use super::case_page::with_unit;
 use super::format::{code, whole_percent};
-use super::output::write_json;
 use super::studies::StudyNote;
-use super::template::fill;
+use super::template::{fill, plain_text};
 use super::{Folder, Studies, engineering, percent};
 use crate::case::{Evidence, TRUTH};
 use crate::compare::{RIGHT_WITHIN, Remainder};
@@ -84,6 +83,9 @@ struct Everything<'a> {
     cases: &'a [Summary],
 }
 
+/// The files of the index.
+pub const INDEX_FILES: [&str; 2] = ["README.md", "summary.json"];
+
 /// Writes `README.md` and `summary.json` of a report.
 ///
 /// # Errors
@@ -103,7 +105,7 @@ pub fn write_index(
         engines,
         cases: summaries,
     };
-    folder.write("summary.json", |out| write_json(out, &everything))
+    folder.write_summary(&everything)
 }
 
 /// The index as Markdown. The first two engines are the ones that its table compares.
@@ -200,7 +202,7 @@ fn caption(summary: &Summary, pair: &PairSummary) -> String {
         });
     format!(
         "{}: {} and {} part by {} ({} of the scene's size).{told}",
-        summary.title,
+        plain_text(&summary.title),
         pair.engine_a,
         pair.engine_b,
         with_unit(pair.position_divergence_max, unit),
@@ -273,7 +275,7 @@ fn parting(summaries: &[Summary], first: &str, second: &str) -> Option<String> {
          [{}]({}/README.md), by {} ({} of its size).",
         pairs.len(),
         whole_percent(RIGHT_WITHIN),
-        summary.title,
+        plain_text(&summary.title),
         summary.scene,
         with_unit(pair.position_divergence_max, summary.length_unit.symbol()),
         percent(pair.position_divergence_relative),

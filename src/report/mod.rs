@@ -22,16 +22,16 @@ mod studies;
 mod tables;
 mod template;
 
-pub use bodies::{bodies_findings, bodies_table, write_bodies};
+pub use bodies::{BODIES_FILES, bodies_findings, bodies_table, write_bodies};
 pub use case_page::findings;
 pub use check::{blessing_text, check_junit, check_text, replay_text, write_blessing};
-pub use cost::CostReport;
+pub use cost::{CostReport, claim_cost};
 #[cfg(feature = "drift")]
-pub use drift::{drift_findings, drift_table, write_drift};
-pub use effects_page::{effects_findings, effects_table, write_effects};
-pub use files::{Folder, remove_unfinished};
+pub use drift::{DRIFT_FILES, drift_findings, drift_table, write_drift};
+pub use effects_page::{EFFECTS_FILES, effects_findings, effects_table, write_effects};
+pub use files::{Folder, Output, Replace, remove_unfinished, write_file};
 pub use format::{engineering, percent};
-pub use index_page::{index_page, write_index};
-pub use output::{Place, write_comparison};
-pub use stability::{stability_findings, stability_table, write_stability};
+pub use index_page::{INDEX_FILES, index_page, write_index};
+pub use output::{Place, claim_comparison, write_comparison};
+pub use stability::{STABILITY_FILES, stability_findings, stability_table, write_stability};
 pub use studies::{COST, STABILITY, Studies};

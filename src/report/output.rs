@@ -1,10 +1,10 @@
 //! Everything that one comparison leaves in its folder.
 
-use std::io::Write;
-
 use super::case_page::case_page;
 use super::tables::{write_divergence, write_metrics};
 use super::{Folder, Studies};
+use crate::case::TRUTH;
+use crate::engine::EngineSpec;
 use crate::error::Result;
 use crate::recording::{write_events, write_trajectory};
 use crate::study::{SideBySide, Summary, Voice};
@@ -12,6 +12,10 @@ use crate::study::{SideBySide, Summary, Voice};
 /// Engines that a picture shows, in the order in which they were asked for; with a reference
 /// that makes three voices, and more would show nothing clearly.
 const PICTURED: usize = 2;
+
+/// The pictures of a comparison.
+pub(super) const PICTURES: [&str; 4] =
+    ["paths.png", "divergence.png", "energy.png", "momentum.png"];
 
 /// The voices of the pictures: the engines first named, then what they are held against.
 fn pictured(comparison: &SideBySide) -> Vec<&Voice> {
@@ -32,32 +36,45 @@ pub enum Place<'a> {
     InReport(&'a Studies),
 }
 
-/// Whether a file in a comparison's folder tells of an engine that may not run this time, or
-/// of the comparison as a whole; the others are written anew in any case.
-fn is_stale(name: &str) -> bool {
-    let table = name.strip_suffix(".csv").unwrap_or_default();
-    let of_voice = ["trajectory-", "events-"];
-    of_voice.iter().any(|kind| table.starts_with(kind))
-        || ["README.md", "summary.json"].contains(&name)
+fn trajectory_file(voice: &str) -> String {
+    format!("trajectory-{voice}.csv")
+}
+
+fn events_file(voice: &str) -> String {
+    format!("events-{voice}.csv")
+}
+
+/// Sees before a comparison on these engines that its files may be written.
+///
+/// # Errors
+/// Those of [`Folder::claim`].
+pub fn claim_comparison(folder: &Folder, engines: &[EngineSpec]) -> Result<()> {
+    let voices = engines.iter().map(|spec| spec.name.as_str());
+    let names: Vec<String> = voices
+        .chain([TRUTH])
+        .flat_map(|voice| [trajectory_file(voice), events_file(voice)])
+        .collect();
+    let tables = ["metrics.csv", "divergence.csv", "README.md", "summary.json"];
+    let names = names.iter().map(String::as_str).chain(tables);
+    folder.claim(names.chain(PICTURES))
 }
 
 /// Writes tables, pictures, page and summary of a comparison; gives the summary.
 ///
 /// # Errors
-/// A file that cannot be written, with its name; each file is whole or not there.
+/// A file that cannot be written, with its name.
 pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) -> Result<Summary> {
     let scene = &comparison.scene;
     let mut summary = Summary::of(comparison);
     if let Place::InReport(studies) = place {
         summary.tell_limits(studies.limits(scene));
     }
-    folder.remove(is_stale)?;
     for voice in &comparison.voices {
         let name = voice.name();
-        folder.write(&format!("trajectory-{name}.csv"), |out| {
+        folder.write(&trajectory_file(name), |out| {
             Ok(write_trajectory(&voice.recording, scene, out)?)
         })?;
-        folder.write(&format!("events-{name}.csv"), |out| {
+        folder.write(&events_file(name), |out| {
             Ok(write_events(&voice.recording.events, scene, out)?)
         })?;
     }
@@ -79,15 +96,6 @@ pub fn write_comparison(folder: &Folder, comparison: &SideBySide, place: Place) 
     };
     let page = case_page(&summary, &names, &shown, studies)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
-    folder.write("summary.json", |out| write_json(out, &summary))?;
+    folder.write_summary(&summary)?;
     Ok(summary)
-}
-
-/// Writes a value as JSON that people can read too.
-pub(super) fn write_json(
-    out: &mut dyn Write,
-    value: &impl serde::Serialize,
-) -> std::io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, value)?;
-    out.write_all(b"\n")
 }

@@ -178,6 +178,15 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
         labelled("rms difference of velocity", &speed_unit),
         Scale::Log,
     );
+    let length = scene.units.length;
+    let mut energy = Panel::new(
+        labelled("difference of energy", length.energy_symbol()),
+        Scale::Log,
+    );
+    let mut momentum = Panel::new(
+        labelled("difference of momentum", length.momentum_symbol()),
+        Scale::Log,
+    );
     let pairs = (0..voices.len()).flat_map(|a| (a + 1..voices.len()).map(move |b| (a, b)));
     for (number, (a, b)) in pairs.enumerate() {
         let Some((divergence, _)) = comparison.pair(voices[a].name(), voices[b].name()) else {
@@ -195,6 +204,20 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
         };
         position.curves.push(curve(|at| at.max_position));
         velocity.curves.push(curve(|at| at.rms_velocity));
+        let difference = |value: fn(&Metrics, &Metrics) -> f64| {
+            let pairs = voices[a].metrics.iter().zip(&voices[b].metrics);
+            let points = pairs.map(|(a, b)| [a.time, value(a, b)]);
+            Curve {
+                points: points.take(divergence.comparable).collect(),
+                ..curve(|at| at.max_position)
+            }
+        };
+        energy.curves.push(difference(|a, b| {
+            (a.total_energy() - b.total_energy()).abs()
+        }));
+        momentum
+            .curves
+            .push(difference(|a, b| (a.momentum - b.momentum).norm()));
     }
     CurvesFigure {
         title: scene.heading().to_owned(),
@@ -204,7 +227,7 @@ fn divergence_figure(comparison: &SideBySide, voices: &[&Voice]) -> CurvesFigure
             vouched(comparison, voices)
         ),
         x_label: "time [s]".into(),
-        panels: vec![position, velocity],
+        panels: vec![position, velocity, energy, momentum],
         marks: marks(voices),
     }
 }

@@ -1,17 +1,17 @@
 //! The studies beside a report, each in a folder of its own: read back as they stand there, so
 //! that a later report still tells of them, with their date.
 
-use std::collections::BTreeMap;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Folder;
-use super::cost::{CostSection, headline};
+use super::cost::{CostSection, cost_pictures, headline};
 use super::stability;
 use crate::error::{Error, Result};
+use crate::input::{self, STORED_BYTES_MAX};
 use crate::scene::Scene;
 use crate::study::Made;
 use crate::study::cost::{CostSummary, EngineLimit};
@@ -25,7 +25,8 @@ pub const STABILITY: &str = "stability";
 /// What the studies beside a report have found; nothing of those that were never made.
 #[derive(Debug, Default)]
 pub struct Studies {
-    report: PathBuf,
+    /// The pictures of the study of cost that are there.
+    cost_pictures: BTreeSet<String>,
     cost: Option<CostSummary>,
     stability: Option<StabilitySummary>,
 }
@@ -64,7 +65,9 @@ impl Studies {
         let cost = kept(stored(report, COST), &mut complaints);
         let stability = kept(stored(report, STABILITY), &mut complaints);
         let studies = Self {
-            report: report.path().to_owned(),
+            cost_pictures: cost.as_ref().map_or_else(BTreeSet::new, |study| {
+                cost_pictures(&report.folder(COST), study)
+            }),
             cost,
             stability,
         };
@@ -103,7 +106,9 @@ impl Studies {
     pub(super) fn of_case(&self, scene: &Scene) -> CaseStudies {
         let study = self.cost.as_ref();
         CaseStudies {
-            cost: study.and_then(|study| CostSection::of(study, scene, &self.report.join(COST))),
+            cost: study.and_then(|study| {
+                CostSection::of(study, scene, |name| self.cost_pictures.contains(name))
+            }),
             cost_origin: study.map(|study| Origin::of(&study.made)),
         }
     }
@@ -146,8 +151,8 @@ fn kept<T>(read: Result<Option<T>>, complaints: &mut Vec<Error>) -> Option<T> {
 
 /// The summary that a study has left; none where no study was made, or none that found anything.
 fn stored<T: DeserializeOwned>(report: &Folder, study: &'static str) -> Result<Option<T>> {
-    let folder = report.path().join(study);
-    let [page, figures] = ["README.md", "summary.json"].map(|name| folder.join(name));
+    let folder = report.folder(study);
+    let [page, figures] = ["README.md", "summary.json"].map(|name| folder.current(name));
     let damaged = |path: PathBuf, message: String| Error::StoredStudy {
         path,
         message,
@@ -158,7 +163,7 @@ fn stored<T: DeserializeOwned>(report: &Folder, study: &'static str) -> Result<O
         (false, true) => Err(damaged(page, "is missing".to_owned())),
         (true, false) => Err(damaged(figures, "is missing".to_owned())),
         (true, true) => {
-            let bytes = fs::read(&figures).map_err(|source| Error::read(&figures, source))?;
+            let bytes = input::bytes(&figures, STORED_BYTES_MAX)?;
             let read = serde_json::from_slice(&bytes);
             read.map_err(|wrong| damaged(figures, format!("not what a study leaves: {wrong}")))
         }
@@ -168,15 +173,16 @@ fn stored<T: DeserializeOwned>(report: &Folder, study: &'static str) -> Result<O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::{Output, Replace};
     use crate::study::cost::EngineFamily;
     use crate::study::cost::testing::{study, summary};
 
-    fn folder(scratch: &tempfile::TempDir) -> Folder {
-        Folder::open(scratch.path()).unwrap()
+    fn output(scratch: &tempfile::TempDir) -> Output {
+        Output::open(scratch.path(), Replace::All).unwrap()
     }
 
     fn leave(folder: &Folder, summary: &CostSummary) {
-        let own = folder.folder(COST).unwrap();
+        let own = folder.folder(COST);
         own.write("README.md", |out| out.write_all(b"page"))
             .unwrap();
         let text = serde_json::to_vec(summary).unwrap();
@@ -187,7 +193,8 @@ mod tests {
     #[test]
     fn a_stored_study_is_told_with_its_date_and_its_versions_if_they_differ() {
         let scratch = tempfile::tempdir().unwrap();
-        let folder = folder(&scratch);
+        let output = output(&scratch);
+        let folder = output.folder();
         let mut made = summary(&[("lecture", EngineFamily::Impulse, &[0.5])]);
         made.made.date = "2001-02-03".to_owned();
         leave(&folder, &made);
@@ -212,7 +219,8 @@ mod tests {
     #[test]
     fn a_case_finds_its_own_results_unless_the_scene_has_changed() {
         let scratch = tempfile::tempdir().unwrap();
-        let folder = folder(&scratch);
+        let output = output(&scratch);
+        let folder = output.folder();
         leave(
             &folder,
             &summary(&[("lecture", EngineFamily::Impulse, &[0.5])]),
@@ -233,7 +241,8 @@ mod tests {
     #[test]
     fn what_is_damaged_is_a_complaint_and_what_is_absent_is_none() {
         let scratch = tempfile::tempdir().unwrap();
-        let folder = folder(&scratch);
+        let output = output(&scratch);
+        let folder = output.folder();
         let complaint = || {
             let (studies, complaints) = Studies::read(&folder);
             assert!(studies.notes().is_empty());
@@ -243,7 +252,7 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(complaint(), [""; 0]);
-        let own = folder.folder(COST).unwrap();
+        let own = folder.folder(COST);
         assert_eq!(complaint(), [""; 0], "an empty folder is no study");
         own.write("README.md", |out| out.write_all(b"page"))
             .unwrap();

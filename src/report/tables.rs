@@ -81,25 +81,45 @@ struct DivergenceRow<'a> {
     max_position: Number,
     worst_body: &'a str,
     rms_velocity: Number,
+    /// Of the total energies, without sign, scene units.
+    energy_difference: Number,
+    /// Of the momenta, the length of the vector, scene units.
+    momentum_difference: Number,
+    /// Of the angular momenta about the origin, the length of the vector, scene units.
+    angular_momentum_difference: Number,
 }
+
+/// The header of `divergence.csv`, for one voice alone, so that a program finds the table it
+/// expects.
+const DIVERGENCE_HEADER: [&str; 10] = [
+    "time",
+    "engine_a",
+    "engine_b",
+    "rms_position",
+    "max_position",
+    "worst_body",
+    "rms_velocity",
+    "energy_difference",
+    "momentum_difference",
+    "angular_momentum_difference",
+];
 
 /// Writes `divergence.csv`: a row per pair of voices and sample.
 pub(super) fn write_divergence(comparison: &SideBySide, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     if comparison.pairs.is_empty() {
-        // One voice alone: the header, so that a program finds the table it expects.
-        table.write_record([
-            "time",
-            "engine_a",
-            "engine_b",
-            "rms_position",
-            "max_position",
-            "worst_body",
-            "rms_velocity",
-        ])?;
+        table.write_record(DIVERGENCE_HEADER)?;
     }
     for (divergence, _) in &comparison.pairs {
-        for at in &divergence.samples {
+        let metrics = [&divergence.voice_a, &divergence.voice_b].map(|name| {
+            comparison
+                .voice(name)
+                .map_or(&[][..], |voice| &voice.metrics)
+        });
+        let pairs = metrics[0].iter().zip(metrics[1]);
+        for (at, (a, b)) in divergence.samples.iter().zip(pairs) {
+            let energy = a.total_energy() - b.total_energy();
+            let turning = a.angular_momentum - b.angular_momentum;
             table.serialize(DivergenceRow {
                 time: Number(at.time),
                 engine_a: &divergence.voice_a,
@@ -108,6 +128,9 @@ pub(super) fn write_divergence(comparison: &SideBySide, out: &mut dyn Write) -> 
                 max_position: Number(at.max_position),
                 worst_body: &comparison.scene.bodies[at.worst_body].name,
                 rms_velocity: Number(at.rms_velocity),
+                energy_difference: Number(energy.abs()),
+                momentum_difference: Number((a.momentum - b.momentum).norm()),
+                angular_momentum_difference: Number(turning.norm()),
             })?;
         }
     }

@@ -3,15 +3,13 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use super::bounds::{BODIES_MAX, LOOKS_MAX, SAMPLES_MAX, STATES_MAX};
 use super::fault::{
     Fault, FieldPath, fault, finite, finite_vector, fraction, not_negative, positive,
 };
-use super::overlap::overlaps;
+use super::overlap::survey;
 use super::{Effects, Scene, Spring};
-use crate::error::{Error, Result, harmless};
-
-/// Samples times bodies that a recording may hold: 2 GB of states.
-const STATES_MAX: f64 = 4e7;
+use crate::error::{Error, Result, code, is_invisible, number, quoted};
 
 /// Characters in a name, at most.
 const NAME_MAX: usize = 200;
@@ -27,8 +25,10 @@ pub enum SceneWarning {
         body_b: String,
         /// Depth of the overlap, scene length unit.
         depth: f64,
-        /// How many pairs overlap.
-        pairs: usize,
+        /// How many pairs overlap, as far as was looked.
+        pairs: u64,
+        /// Whether all pairs were looked at; else there may be more, and deeper ones.
+        all: bool,
     },
     /// A sphere starts beyond a cushion.
     OutsideAtStart {
@@ -45,15 +45,20 @@ impl fmt::Display for SceneWarning {
                 body_b,
                 depth,
                 pairs,
+                all,
             } => write!(
                 f,
-                "{pairs} pair(s) overlap at the start, deepest `{body_a}` and `{body_b}` by {depth:.3e} (scene units): \
-                 engines push them apart, each in its own way; move them apart for a comparison of motion"
+                "{}{pairs} pair(s) overlap at the start, deepest {} and {} by {depth:.3e} (scene units): \
+                 engines push them apart, each in its own way; move them apart for a comparison of motion",
+                if *all { "" } else { "more than " },
+                code(body_a),
+                code(body_b)
             ),
             Self::OutsideAtStart { body } => write!(
                 f,
-                "`{body}` starts beyond a cushion: engines put it back, each in its own way; \
-                 start it inside for a comparison of motion"
+                "{} starts beyond a cushion: engines put it back, each in its own way; \
+                 start it inside for a comparison of motion",
+                code(body)
             ),
         }
     }
@@ -73,16 +78,8 @@ impl Scene {
             ("watch", &self.watch),
         ];
         for (key, text) in texts {
-            if text
-                .as_ref()
-                .is_some_and(|text| text.chars().any(is_invisible))
-            {
-                let remedy = "write it in one line, without control characters";
-                return Err(fault(
-                    root().key(key),
-                    "text with control characters",
-                    remedy,
-                ));
+            if let Some(text) = text {
+                check_text(&root().key(key), text)?;
             }
         }
         positive(&root().key("duration"), self.duration)?;
@@ -95,6 +92,13 @@ impl Scene {
                 "add at least one [[bodies]] table",
             ));
         }
+        if self.bodies.len() > BODIES_MAX {
+            return Err(fault(
+                root().key("bodies"),
+                format!("{} bodies", self.bodies.len()),
+                format!("a scene has at most {BODIES_MAX}; take fewer"),
+            ));
+        }
         let mut names = HashMap::new();
         for (index, body) in self.bodies.iter().enumerate() {
             let path = root().key("bodies").index(index);
@@ -102,7 +106,7 @@ impl Scene {
             if let Some(first) = names.insert(body.name.as_str(), index) {
                 return Err(fault(
                     path.key("name"),
-                    format!("`{}`, the name of bodies[{first}] too", body.name),
+                    format!("`{}`, the name of bodies[{first}] too", quoted(&body.name)),
                     "give every body a name of its own",
                 ));
             }
@@ -129,10 +133,20 @@ impl Scene {
         let samples = (self.duration / self.sample_every).round();
         #[allow(clippy::cast_precision_loss, reason = "a bound, not a result")]
         let states = samples * self.bodies.len().max(1) as f64;
-        if states > STATES_MAX {
+        if samples > SAMPLES_MAX {
             return Err(fault(
                 FieldPath::default().key("sample_every"),
                 format!("{} s", self.sample_every),
+                format!(
+                    "that makes {samples:.3e} samples, more than {SAMPLES_MAX:.0e}; sample less \
+                     often or shorten `duration`"
+                ),
+            ));
+        }
+        if states > STATES_MAX {
+            return Err(fault(
+                FieldPath::default().key("sample_every"),
+                format!("{} s", number(self.sample_every)),
                 format!(
                     "that makes {states:.3e} states to keep (samples x bodies), more than {STATES_MAX:.0e}; \
                      sample less often or shorten `duration`"
@@ -144,11 +158,11 @@ impl Scene {
         if (nearest - self.duration).abs() > 1e-9 * self.duration {
             return Err(fault(
                 path,
-                format!("{} s", self.duration),
+                format!("{} s", number(self.duration)),
                 format!(
                     "make it a multiple of sample_every = {} s, such as {} s",
-                    self.sample_every,
-                    samples.max(1.0) * self.sample_every
+                    number(self.sample_every),
+                    number(samples.max(1.0) * self.sample_every)
                 ),
             ));
         }
@@ -174,13 +188,13 @@ impl Scene {
                 .iter()
                 .map(|body| (body.position.into(), body.radius))
                 .collect();
-            let overlaps = overlaps(&spheres);
-            let deepest = overlaps.iter().max_by(|a, b| a.depth.total_cmp(&b.depth));
-            warnings.extend(deepest.map(|deepest| SceneWarning::OverlapAtStart {
+            let found = survey(&spheres, LOOKS_MAX);
+            warnings.extend(found.deepest.map(|deepest| SceneWarning::OverlapAtStart {
                 body_a: self.bodies[deepest.a].name.clone(),
                 body_b: self.bodies[deepest.b].name.clone(),
                 depth: deepest.depth,
-                pairs: overlaps.len(),
+                pairs: found.pairs,
+                all: found.all,
             }));
         }
         warnings
@@ -233,7 +247,7 @@ fn check_spring(
         if !names.contains_key(name.as_str()) {
             return Err(fault(
                 path.clone().key("between").index(end),
-                format!("`{}`, and no body has that name", harmless(name)),
+                format!("`{}`, and no body has that name", quoted(name)),
                 "name two bodies of this scene",
             ));
         }
@@ -241,7 +255,7 @@ fn check_spring(
     if spring.between[0] == spring.between[1] {
         return Err(fault(
             path.clone().key("between"),
-            format!("`{}` twice", spring.between[0]),
+            format!("`{}` twice", quoted(&spring.between[0])),
             "a spring joins two different bodies",
         ));
     }
@@ -250,14 +264,27 @@ fn check_spring(
     not_negative(&path.clone().key("damping"), spring.damping)
 }
 
-fn check_scene_name(name: &str) -> std::result::Result<(), Fault> {
+/// Text of one line for people, wherever a file of data has some.
+pub(crate) fn check_text(path: &FieldPath, text: &str) -> std::result::Result<(), Fault> {
+    if !text.chars().any(is_invisible) {
+        return Ok(());
+    }
+    Err(fault(
+        path.clone(),
+        "text with control characters",
+        "write it in one line, without control characters",
+    ))
+}
+
+/// A name is a folder name too.
+pub(crate) fn check_scene_name(name: &str) -> std::result::Result<(), Fault> {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if !name.is_empty() && name.len() <= 100 && name.chars().all(allowed) {
         return Ok(());
     }
     Err(fault(
         FieldPath::default().key("name"),
-        format!("`{}`", harmless(name)),
+        format!("`{}`", quoted(name)),
         "use 1 to 100 of the characters a-z, 0-9 and `-`; it is a folder name too",
     ))
 }
@@ -269,7 +296,7 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
     if name.chars().any(is_invisible) {
         return Err(fault(
             path.clone(),
-            format!("`{}`", harmless(name)),
+            format!("`{}`", quoted(name)),
             "leave out control characters such as tabs, line ends and marks of direction",
         ));
     }
@@ -281,15 +308,4 @@ fn check_body_name(path: &FieldPath, name: &str) -> std::result::Result<(), Faul
         ));
     }
     Ok(())
-}
-
-/// Control characters, and marks of Unicode that show as nothing but change how text is laid
-/// out.
-fn is_invisible(c: char) -> bool {
-    let marks = [
-        '\u{200b}'..='\u{200f}',
-        '\u{2028}'..='\u{202e}',
-        '\u{2060}'..='\u{206f}',
-    ];
-    c.is_control() || c == '\u{feff}' || marks.iter().any(|range| range.contains(&c))
 }

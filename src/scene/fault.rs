@@ -4,6 +4,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use crate::error::{number, quoted};
+
 /// One step from the root of a file to a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PathStep {
@@ -37,8 +39,8 @@ impl fmt::Display for FieldPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (place, step) in self.0.iter().enumerate() {
             match step {
-                PathStep::Key(key) if place == 0 => write!(f, "{key}")?,
-                PathStep::Key(key) => write!(f, ".{key}")?,
+                PathStep::Key(key) if place == 0 => write!(f, "{}", quoted(key))?,
+                PathStep::Key(key) => write!(f, ".{}", quoted(key))?,
                 PathStep::Index(index) => write!(f, "[{index}]")?,
             }
         }
@@ -75,11 +77,7 @@ pub(crate) fn finite(path: &FieldPath, value: f64) -> std::result::Result<(), Fa
     if value.is_finite() {
         return Ok(());
     }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give a finite number",
-    ))
+    Err(fault(path.clone(), number(value), "give a finite number"))
 }
 
 pub(crate) fn positive(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
@@ -87,11 +85,7 @@ pub(crate) fn positive(path: &FieldPath, value: f64) -> std::result::Result<(), 
     if value > 0.0 {
         return Ok(());
     }
-    Err(fault(
-        path.clone(),
-        value.to_string(),
-        "give a number above 0",
-    ))
+    Err(fault(path.clone(), number(value), "give a number above 0"))
 }
 
 pub(crate) fn not_negative(path: &FieldPath, value: f64) -> std::result::Result<(), Fault> {
@@ -101,7 +95,7 @@ pub(crate) fn not_negative(path: &FieldPath, value: f64) -> std::result::Result<
     }
     Err(fault(
         path.clone(),
-        value.to_string(),
+        number(value),
         "give 0 or a number above it",
     ))
 }
@@ -113,7 +107,7 @@ pub(crate) fn fraction(path: &FieldPath, value: f64) -> std::result::Result<(), 
     }
     Err(fault(
         path.clone(),
-        value.to_string(),
+        number(value),
         "give a number from 0 to 1",
     ))
 }

@@ -7,18 +7,19 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::bounds::{TEXT_BYTES_MAX, past_bounds};
+use super::words::in_plain_words;
 use super::{Fault, FieldPath, PathStep, Scene};
 use crate::error::{Error, Result};
+use crate::input;
 
 /// Reads and checks a scene file.
 ///
 /// # Errors
 /// [`Error::Read`], [`Error::NotUtf8`], or [`Error::DataFile`] with line, column and remedy.
 pub fn read(path: &Path) -> Result<Scene> {
-    let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
-    let file = path.display().to_string();
-    let text = String::from_utf8(bytes).map_err(|wrong| Error::not_utf8(&file, &wrong))?;
-    parse(&text, &file)
+    let text = input::text(path, TEXT_BYTES_MAX)?;
+    parse(&text, &path.display().to_string())
 }
 
 /// Parses and checks the text of a scene file; `file` is its name in messages.
@@ -47,9 +48,13 @@ pub(crate) fn parse_checked<T: DeserializeOwned>(
             message,
         }
     };
+    if let Some((byte, message)) = past_bounds(text) {
+        return Err(complaint(byte, message));
+    }
     let data: T = toml::from_str(text).map_err(|wrong| {
         let byte = wrong.span().map_or(0, |span| span.start);
-        complaint(byte, in_plain_words(wrong.message()))
+        let source = text.get(byte..).unwrap_or_default();
+        complaint(byte, in_plain_words(wrong.message(), source))
     })?;
     check(&data).map_err(|fault| complaint(locate(text, &fault.path), fault.to_string()))?;
     Ok(data)
@@ -61,10 +66,17 @@ pub(crate) fn parse_checked<T: DeserializeOwned>(
 /// [`Error::Scene`] if the scene is not one, [`Error::SceneWrite`] if TOML cannot hold it.
 pub fn to_toml(scene: &Scene) -> Result<String> {
     scene.checked()?;
-    toml::to_string(scene).map_err(|source| Error::SceneWrite {
+    let text = toml::to_string(scene).map_err(|source| Error::SceneWrite {
         scene: scene.name.clone(),
         source,
-    })
+    })?;
+    match past_bounds(&text) {
+        None => Ok(text),
+        Some((_, message)) => Err(Error::Scene {
+            scene: scene.name.clone(),
+            message: format!("its file would have {message}"),
+        }),
+    }
 }
 
 /// Reads an array that has exactly so many values; serde itself drops what is too much.
@@ -111,18 +123,6 @@ fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     (line, column)
-}
-
-/// The parser's message in one line, without the names of Rust's types.
-fn in_plain_words(message: &str) -> String {
-    let words = message.split_whitespace().map(|word| match word {
-        "f64" | "f64," => "a number",
-        "i128" | "i64" => "an integer",
-        "map," => "table,",
-        "sequence" => "array",
-        word => word,
-    });
-    words.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

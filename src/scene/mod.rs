@@ -1,13 +1,17 @@
 //! *What* happens: bodies, units and effects, as a scene file says it or a generator makes it.
 
-mod check;
+mod bounds;
+pub(crate) mod check;
 mod effects;
 pub(crate) mod fault;
 mod file;
 pub mod generate;
 pub mod overlap;
 mod units;
+mod words;
 
+pub use bounds::BODIES_MAX;
+pub(crate) use bounds::{LOOKS_MAX, TEXT_BYTES_MAX};
 pub use check::SceneWarning;
 pub use effects::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Spring};
 pub use fault::{Fault, FieldPath, PathStep};

@@ -220,7 +220,7 @@ pub(super) fn energy_rises<'a>(
     metrics: &'a [Metrics],
 ) -> impl Iterator<Item = (f64, f64)> + use<'a> {
     let start = metrics[0].total_energy();
-    let scale = bound.scale.unwrap_or_else(|| metrics[0].energy_scale());
+    let scale = bound.scale.unwrap_or_else(|| metrics[0].start_energy());
     metrics
         .iter()
         .map(move |at| (at.time, (at.total_energy() - start) / scale))

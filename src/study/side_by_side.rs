@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::bounds::{SAMPLES_COMPARED_MAX, STATES_COMPARED_MAX};
 use crate::case::{Case, Evidence};
 use crate::compare::{
     ClusterFacts, Divergence, Drift, EventAgreement, Metrics, Sizes, Verdict, cluster_facts,
@@ -12,6 +13,9 @@ use crate::engine::{EngineSpec, record};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::scene::Scene;
+
+/// Recordings beside that of a voice that the engine `exact` holds to certify it.
+const CERTIFYING: usize = 2;
 
 /// One voice in a comparison: an engine's recording, or truth.
 #[derive(Debug, Clone)]
@@ -136,12 +140,45 @@ impl SideBySide {
     }
 }
 
+/// Sees that the recordings of so many voices fit into memory together.
+///
+/// # Errors
+/// [`Error::Scene`] with how many samples would do.
+pub fn fits(scene: &Scene, voices: usize) -> Result<()> {
+    let samples = scene.sample_count();
+    if samples > SAMPLES_COMPARED_MAX {
+        return Err(Error::Scene {
+            scene: scene.name.clone(),
+            message: format!(
+                "{samples} samples, more than the {SAMPLES_COMPARED_MAX} that a comparison can \
+                 hold; sample less often or shorten `duration`"
+            ),
+        });
+    }
+    let recordings = voices.saturating_add(CERTIFYING);
+    let states = (scene.sample_count() + 1).saturating_mul(scene.bodies.len());
+    let all = recordings.saturating_mul(states);
+    if all <= STATES_COMPARED_MAX {
+        return Ok(());
+    }
+    Err(Error::Scene {
+        scene: scene.name.clone(),
+        message: format!(
+            "{} samples of {} bodies in {voices} voices make {all} states to hold with those that \
+             certify, more than {STATES_COMPARED_MAX}; take fewer engines, or sample less often",
+            scene.sample_count() + 1,
+            scene.bodies.len()
+        ),
+    })
+}
+
 /// Runs every engine on a case and compares all voices, pair by pair.
 ///
 /// # Errors
-/// As [`record`], but an engine that refuses the scene or blows up is a result, not an error.
+/// As [`record`] and [`fits`], but an engine that refuses the scene or blows up is a result, not an error.
 pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBySide> {
     let scene = &case.scene;
+    fits(scene, specs.len() + usize::from(case.truth.is_some()))?;
     let recorded: Vec<_> = specs
         .par_iter()
         .map(|spec| (spec, record(scene, spec, dt)))
@@ -168,12 +205,12 @@ pub fn side_by_side(case: &Case, specs: &[EngineSpec], dt: f64) -> Result<SideBy
     for voice in &mut voices {
         voice.drift = Drift::of(&voice.metrics, &scale);
     }
-    let recordings: Vec<_> = voices.iter().map(|voice| voice.recording.clone()).collect();
+    let recordings: Vec<_> = voices.iter().map(|voice| &voice.recording).collect();
     let later = |a: usize| (a + 1..recordings.len()).map(move |b| (a, b));
     let pairs = (0..recordings.len())
         .flat_map(later)
         .map(|(a, b)| {
-            let (a, b) = (&recordings[a], &recordings[b]);
+            let (a, b) = (recordings[a], recordings[b]);
             (
                 Divergence::between(scene, a, b),
                 compare_events(scene, a, b),
@@ -208,9 +245,5 @@ fn common_scale(voices: &[Voice]) -> Sizes {
             .reduce(Sizes::smaller)
     };
     let scale = finished.map(|voice| voice.scale).reduce(Sizes::smaller);
-    scale.or_else(of_all).unwrap_or(Sizes {
-        length: 0.0,
-        energy: 0.0,
-        momentum: 0.0,
-    })
+    scale.or_else(of_all).unwrap_or_default()
 }

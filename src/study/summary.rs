@@ -45,6 +45,8 @@ pub struct Summary {
     pub model_conserves_energy: bool,
     /// Whether the model keeps the momentum.
     pub model_conserves_momentum: bool,
+    /// Whether the model keeps the angular momentum.
+    pub model_conserves_angular_momentum: bool,
     /// What is allowed but worth saying.
     pub warnings: Vec<String>,
     /// Where the truth comes from.
@@ -119,10 +121,12 @@ pub struct PairSummary {
     pub worst_body: String,
     /// Largest rms difference of velocities, scene length unit per second.
     pub velocity_divergence_rms_max: f64,
-    /// Largest difference of the total energies, over the larger energy scale.
+    /// Largest difference of the total energies, over the energy scale of the comparison.
     pub energy_difference_max: f64,
-    /// Largest difference of the total momenta, over the larger momentum scale.
+    /// Largest difference of the total momenta, over the momentum scale of the comparison.
     pub momentum_difference_max: f64,
+    /// Largest difference of the angular momenta about the centre of mass, over their scale.
+    pub angular_momentum_difference_max: f64,
     /// Largest distance of the two centres of mass, scene length unit.
     pub centre_of_mass_difference_max: f64,
     /// Impacts that match in order.
@@ -169,6 +173,7 @@ impl Summary {
             scale: comparison.scale,
             model_conserves_energy: scene.effects.conserve_energy(),
             model_conserves_momentum: scene.effects.conserve_momentum(),
+            model_conserves_angular_momentum: scene.effects.conserve_angular_momentum(),
             warnings: scene.warnings().iter().map(ToString::to_string).collect(),
             truth_origin: comparison.origin.clone(),
             evidence: comparison.evidence,
@@ -254,6 +259,7 @@ impl PairSummary {
         let scale = &comparison.scale;
         let energies = both().map(|(a, b)| (a.total_energy() - b.total_energy()).abs());
         let momenta = both().map(|(a, b)| (a.momentum - b.momentum).norm());
+        let spins = both().map(|(a, b)| (a.spin - b.spin).norm());
         let centres = both().map(|(a, b)| (a.centre_of_mass - b.centre_of_mass).norm());
         let named = |(body, distance): (&crate::scene::Body, &f64)| (body.name.clone(), *distance);
         Some(Self {
@@ -270,6 +276,10 @@ impl PairSummary {
                 .fold(0.0, f64::max),
             energy_difference_max: Sizes::share(energies.fold(0.0, f64::max), scale.energy),
             momentum_difference_max: Sizes::share(momenta.fold(0.0, f64::max), scale.momentum),
+            angular_momentum_difference_max: Sizes::share(
+                spins.fold(0.0, f64::max),
+                scale.angular_momentum,
+            ),
             centre_of_mass_difference_max: centres.fold(0.0, f64::max),
             impacts_matched: agreement.matched,
             impact_time_difference_max_s: agreement.time_difference_max,
@@ -306,11 +316,11 @@ impl DisagreementSummary {
 
 /// An impact in words: who, against whom, when.
 fn describe(scene: &Scene, event: &Event) -> String {
-    let name = |body: usize| &scene.bodies[body].name;
+    let name = |body: usize| crate::error::code(&scene.bodies[body].name);
     let what = match event.kind {
-        EventKind::Contact { a, b } => format!("`{}` hit `{}`", name(a), name(b)),
-        EventKind::Cushion { body, wall } => format!("`{}` hit cushion {wall}", name(body)),
-        EventKind::Rest { body } => format!("`{}` stop", name(body)),
+        EventKind::Contact { a, b } => format!("{} hit {}", name(a), name(b)),
+        EventKind::Cushion { body, wall } => format!("{} hit cushion {wall}", name(body)),
+        EventKind::Rest { body } => format!("{} stop", name(body)),
     };
     format!("{what} at {:.4} s", event.time)
 }

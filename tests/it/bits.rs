@@ -45,8 +45,10 @@ struct Line {
     dt: f64,
     /// States.
     states: String,
-    /// Impacts, books, work and what was given up.
+    /// Impacts, books and what was given up.
     beside: String,
+    /// Counted work.
+    work: String,
 }
 
 /// What is run.
@@ -87,19 +89,20 @@ impl Run {
         }
         // The debug form of a double is the shortest that reads back as the same bits.
         let beside = format!(
-            "{outcome:?} {:?} {:?} {:?} {:?} {:?}",
+            "{outcome:?} {:?} {:?} {:?} {:?}",
             log.events(),
             log.counts(),
             simulation.ledger(),
-            simulation.work(),
             simulation.concessions()
         );
+        let work = format!("{:?}", simulation.work());
         Line {
             case: scene.name.clone(),
             engine: self.spec.name.clone(),
             dt: self.dt,
             states: recording.digest()[..16].to_owned(),
             beside: short_hash(&beside),
+            work: short_hash(&work),
         }
     }
 }

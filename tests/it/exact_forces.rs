@@ -331,6 +331,8 @@ fn the_lectures_cluster_collapses() {
 fn claims_hold_against_a_third_computation() {
     let third = Accuracy {
         order: 31,
+        short_order: 9,
+        step: 0.8,
         tolerance: 1e-26,
         bounce_height: 1e-26,
     };

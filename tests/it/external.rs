@@ -436,6 +436,58 @@ fn a_check_that_is_interrupted_leaves_neither_solver_nor_folder() {
     assert!(folder.is_absolute() && !folder.exists(), "{folder:?}");
 }
 
+/// A `carom check` whose solver hangs, with its temporary folders in that one; gives it and the
+/// solver's folder once the solver runs.
+#[cfg(unix)]
+fn hanging(scratch: &Scratch, name: &str, word: &str) -> (std::process::Child, PathBuf) {
+    let script = format!(
+        "dirname \"$1\" > \"$D/new\"; mv \"$D/new\" \"$D/{name}\"; sleep {word} & sleep {word}"
+    );
+    let solver = scratch.script(&script, "{out}");
+    let check = Command::new(env!("CARGO_BIN_EXE_carom"))
+        .args(["check", "headon-equal", "--limit", "60", "--solver"])
+        .arg(&solver)
+        .env("TMPDIR", scratch.0.path())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !scratch.file(name).exists() {
+        assert!(start.elapsed() < AMPLE, "the solver was not started");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    (check, PathBuf::from(scratch.text(name).trim()))
+}
+
+/// The solver used to run on for as long as it liked when carom was killed, and its folder stayed
+/// for ever.
+#[cfg(unix)]
+#[test]
+fn a_check_that_is_killed_leaves_no_solver_and_the_next_one_no_folder() {
+    use rustix::process::{Pid, Signal, kill_process};
+
+    let scratch = Scratch::new();
+    let words = [6, 7, 8].map(marker);
+    let (mut killed, left) = hanging(&scratch, "0", &words[0]);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let start = Instant::now();
+    assert_gone(&words[0]);
+    assert!(start.elapsed() < SOON / 10, "{:?}", start.elapsed());
+    assert!(left.is_dir());
+    // Two at once leave each other's alone.
+    let (mut next, own) = hanging(&scratch, "1", &words[1]);
+    assert!(!left.exists());
+    let (mut last, other) = hanging(&scratch, "2", &words[2]);
+    assert!(own.is_dir() && other.is_dir());
+    for (check, word) in [(&mut next, &words[1]), (&mut last, &words[2])] {
+        assert!(check.try_wait().unwrap().is_none());
+        kill_process(Pid::from_child(check), Signal::INT).unwrap();
+        assert_eq!(check.wait().unwrap().code(), Some(130));
+        assert_gone(word);
+    }
+    assert!(!own.exists() && !other.exists());
+}
+
 #[test]
 #[ignore = "the other end of all_that_runs_can_be_ended_at_once, which starts it"]
 fn in_a_process_that_is_interrupted() {

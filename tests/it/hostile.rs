@@ -122,7 +122,7 @@ const CASES: u32 = 200;
 const OPERATIONS: u64 = 20_000_000;
 
 /// The engine with a bound on its work that lets hundreds of scenes pass in seconds.
-fn in_short(mut spec: EngineSpec) -> EngineSpec {
+pub fn in_short(mut spec: EngineSpec) -> EngineSpec {
     if let EngineKind::Exact(settings) = &mut spec.kind {
         settings.operations = OPERATIONS;
     }

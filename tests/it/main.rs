@@ -3,6 +3,9 @@
 
 mod bad_input;
 mod bits;
+#[cfg(unix)]
+mod bounded;
+mod budget;
 mod cases;
 mod check;
 mod closed_forms;
@@ -15,6 +18,7 @@ mod drift;
 mod effects;
 mod exact_flight;
 mod exact_forces;
+mod exact_lies;
 mod exact_ties;
 mod example_solvers;
 #[cfg(unix)]
@@ -29,8 +33,11 @@ mod invariants;
 mod layers;
 mod ledger;
 mod limits;
+mod mutants;
+mod options;
 mod oracle;
 mod orders;
+mod outputs;
 mod own_truth;
 mod plain_loop;
 mod plan;
@@ -40,9 +47,11 @@ mod robust;
 mod robust_matrix;
 mod robust_safeguards;
 mod scenes;
+mod shown;
 mod slips;
 mod stability;
 mod studies;
 #[cfg(feature = "rapier")]
 mod swept_times;
+mod taylor_faults;
 mod tuning;

@@ -1,5 +1,6 @@
 //! From errors to the digits that are claimed.
 
+use super::parting::Parting;
 use crate::recording::{Digits, Recording};
 
 /// No more digits are claimed: the published numbers are doubles.
@@ -47,6 +48,26 @@ impl Scale {
             velocity: count(velocity, ROUNDING * self.speed, self.speed),
         }
     }
+}
+
+/// Digits of every sample from its own errors; once a digit of a position is lost it does not come
+/// back.
+///
+/// A velocity may differ at one sample alone, when an impact falls on it: the sample claims
+/// nothing then, but its neighbours do. Shape: `[sample]`.
+pub(super) fn claims(errors: &[Parting], scale: &Scale) -> Vec<Digits> {
+    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
+    let mut digits = Vec::with_capacity(errors.len());
+    for (sample, own) in errors.iter().enumerate() {
+        position = position.max(own.position);
+        let around = &errors[sample.saturating_sub(1)..errors.len().min(sample + 2)];
+        let lasting = around
+            .iter()
+            .fold(f64::INFINITY, |least, near| least.min(near.velocity));
+        velocity = velocity.max(lasting);
+        digits.push(scale.digits(position, velocity.max(own.velocity)));
+    }
+    digits
 }
 
 /// Whole digits of something of that size; what has no size and no error is known for good.

@@ -3,6 +3,7 @@
 //! Scenes without attraction and springs fly in closed form (`flight`); the others are
 //! integrated by Taylor series (`forces`).
 
+mod audit;
 mod claim;
 mod effort;
 pub mod flight;
@@ -19,10 +20,12 @@ pub use crate::physics::real::Real;
 pub use order::TieOrder;
 pub use wide::Wide;
 
+use std::borrow::Cow;
+
 use super::{ExactSettings, Phase, Simulation};
 use crate::error::Result;
 use crate::recording::{Digits, Outcome, Recording, Undetermined};
-use crate::scene::Scene;
+use crate::scene::{Attraction, Scene};
 
 /// A recording with what it vouches for.
 #[derive(Debug, Clone)]
@@ -40,6 +43,17 @@ fn has_forces(scene: &Scene) -> bool {
     scene.effects.attraction.is_some() || !scene.effects.springs.is_empty()
 }
 
+/// The scene without an attraction that attracts nothing, of one body or of no strength: its
+/// flights have closed forms, which no stiff drag makes slow.
+fn without_idle_attraction(scene: &Scene) -> Cow<'_, Scene> {
+    let is_idle = |attraction: Attraction| attraction.constant == 0.0 || scene.bodies.len() == 1;
+    let mut scene = Cow::Borrowed(scene);
+    if scene.effects.attraction.is_some_and(is_idle) {
+        scene.to_mut().effects.attraction = None;
+    }
+    scene
+}
+
 /// Whether bodies can come to lie on something, for which flights have no closed form either.
 fn can_come_to_lie(scene: &Scene) -> bool {
     let effects = &scene.effects;
@@ -52,6 +66,7 @@ fn can_come_to_lie(scene: &Scene) -> bool {
 /// # Errors
 /// [`Error::EngineCannot`](crate::error::Error::EngineCannot) for what has no exact meaning.
 pub fn simulation(scene: &Scene, settings: ExactSettings) -> Result<Box<dyn Simulation + Send>> {
+    let scene = &*without_idle_attraction(scene);
     let forces = || -> Result<_> {
         let simulation = forces::ForcesSimulation::<f64>::new(scene, forces::Accuracy::FAST)?;
         Ok(simulation.limited(settings.operations))
@@ -78,10 +93,12 @@ pub fn record(scene: &Scene, voice: &str, settings: ExactSettings) -> Result<Rec
     voice.clone_into(&mut recording.voice);
     recording.digits = Some(certified.digits);
     recording.undetermined = certified.undetermined;
+    audit::audited(scene, &mut recording);
     Ok(recording)
 }
 
 fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
+    let scene = &*without_idle_attraction(scene);
     if has_forces(scene) {
         return forces::certified(scene, operations);
     }
@@ -100,6 +117,7 @@ fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
 /// As [`simulation`].
 pub fn phases(scene: &Scene, settings: ExactSettings) -> Result<Vec<Phase>> {
     simulation(scene, settings)?;
+    let scene = &*without_idle_attraction(scene);
     let effects = &scene.effects;
     let flight = match (effects.drag.is_some(), effects.gravity.is_some()) {
         _ if has_forces(scene) => "Taylor series of all forces, steps by their own convergence",

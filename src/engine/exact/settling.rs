@@ -59,6 +59,7 @@ impl Simulation for SettlingSimulation {
             steps: flight.steps + forces.steps,
             pair_tests: flight.pair_tests + forces.pair_tests,
             force_evaluations: forces.force_evaluations,
+            solving: flight.solving + forces.solving,
         }
     }
 }

@@ -126,7 +126,16 @@ impl Real for Wide {
 
     /// Without the detour over `exp(x) - 1`, which would lose the digits of a small result.
     fn exp(self) -> Self {
-        if self.0.hi() < -0.5 {
+        let size = self.0.hi();
+        // Neither the reciprocal of what is infinite nor a sum with it is a number.
+        if !(-1490.0..=709.0).contains(&size) {
+            return Self::from_f64(size.exp());
+        }
+        if size < -700.0 {
+            let root = self.times(0.5).exp();
+            return root * root;
+        }
+        if size < -0.5 {
             return Self::one() / ((-self).exp_m1() + Self::one());
         }
         self.exp_m1() + Self::one()
@@ -324,6 +333,19 @@ mod tests {
                 assert!((back - x).to_f64().abs() <= room, "{x:?} {back:?}");
             }
         }
+    }
+
+    /// Used to be not a number: a ball under a drag of 1e6 per second was lost within a sample.
+    #[test]
+    fn an_exponential_beyond_doubles_is_nothing_or_infinite() {
+        let exp = |x: f64| Wide::from_f64(x).exp().to_f64();
+        assert_eq!([exp(-2.5e5), exp(-1480.0)], [0.0, 0.0]);
+        assert_eq!(exp(2.5e5), f64::INFINITY);
+        let small = exp(-720.0);
+        assert!(
+            (small / (-720.0_f64).exp() - 1.0).abs() < 1e-12,
+            "{small:e}"
+        );
     }
 
     #[test]

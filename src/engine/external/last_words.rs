@@ -1,6 +1,6 @@
 //! What a program said last on standard error.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -29,6 +29,10 @@ pub(super) fn last_words(file: &Path) -> Option<String> {
 }
 
 fn tail(file: &Path) -> io::Result<Vec<u8>> {
+    if !fs::symlink_metadata(file)?.is_file() {
+        // The program may have put a pipe there, which nobody fills.
+        return Ok(Vec::new());
+    }
     let mut file = File::open(file)?;
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(BYTES_MAX)))?;

@@ -3,15 +3,16 @@
 //!
 //! The program is a guest that is not trusted: it has a time, a number of bytes, a temporary
 //! folder and a process group of its own, and whatever it does, all of them end with it.
-//! `command` splits the command and fills in its placeholders, `input` writes what the program
-//! reads, `running` is the guard that ends it, `run` watches it.
+//! `command` splits the command and fills in its placeholders, `tables` writes what the program
+//! reads, `folder` is where it works, `running` is the guard that ends it, `run` watches it.
 
 mod command;
-mod input;
+mod folder;
 mod last_words;
 mod process;
 mod run;
 mod running;
+mod tables;
 
 pub use running::end_all;
 
@@ -21,8 +22,9 @@ use std::time::Duration;
 
 use self::command::SolverCommand;
 use super::StepGrid;
-use crate::error::{Error, Result};
-use crate::recording::{Recording, check_start, read_trajectory};
+use crate::error::Result;
+use crate::input;
+use crate::recording::{Recording, check_start, read_trajectory, trajectory_bytes_max};
 use crate::scene::Scene;
 
 /// A user's own solver: a command, ready to be started on a scene.
@@ -92,7 +94,7 @@ impl ExternalSolver {
 /// # Errors
 /// [`Error::Read`], or [`Error::Table`] with the line of what is no trajectory of this scene.
 pub fn trajectory_file(voice: &str, scene: &Scene, path: &Path) -> Result<Recording> {
-    let file = File::open(path).map_err(|source| Error::read(path, source))?;
+    let file = input::open(path, trajectory_bytes_max(scene))?;
     trajectory(voice, scene, file, &path.display().to_string())
 }
 

@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 use super::command::{Placeholder, SolverCommand};
 use super::last_words::last_words;
 use super::running::Running;
-use super::{Limits, input, trajectory};
+use super::{Limits, tables, trajectory};
 use crate::engine::StepGrid;
 use crate::error::{Error, Result};
-use crate::recording::Recording;
+use crate::recording::{Recording, trajectory_bytes, trajectory_room};
 use crate::scene::{self, Scene};
 
 /// The first pause between two looks at the solver; each later one is twice as long.
@@ -21,12 +21,6 @@ const PAUSE_FIRST: Duration = Duration::from_millis(5);
 
 /// The longest pause.
 const PAUSE_MAX: Duration = Duration::from_millis(20);
-
-/// Times what a trajectory can need that may be written.
-const ROOM: u64 = 4;
-
-/// Characters of a double with all its digits, sign, exponent and comma.
-const NUMBER_BYTES: u64 = 25;
 
 /// What messages call standard output.
 const STDOUT: &str = "standard output";
@@ -127,10 +121,10 @@ fn lay_out(
         written.map_err(Wrong::File)?;
     }
     if command.asks_for(Placeholder::Bodies) {
-        input::write_bodies(scene, create(&files.bodies)?).map_err(unwritten)?;
+        tables::write_bodies(scene, create(&files.bodies)?).map_err(unwritten)?;
     }
     if command.asks_for(Placeholder::Effects) {
-        input::write_effects(scene, grid, create(&files.effects)?).map_err(unwritten)?;
+        tables::write_effects(scene, grid, create(&files.effects)?).map_err(unwritten)?;
     }
     Ok(())
 }
@@ -181,7 +175,7 @@ fn watch(
     limits: Limits,
     scene: &Scene,
 ) -> std::result::Result<(), String> {
-    let allowed = limits.output_bytes.max(ROOM.saturating_mul(needed(scene)));
+    let allowed = limits.output_bytes.max(trajectory_room(scene));
     let watched = [
         (STDOUT, &files.stdout),
         (STDERR, &files.stderr),
@@ -197,7 +191,7 @@ fn watch(
             return Err(format!(
                 "wrote more than {allowed} bytes to {name}, where the whole trajectory takes \
                  {} at most; write a row a body and sample, and nothing else",
-                needed(scene)
+                trajectory_bytes(scene)
             ));
         }
         if has_ended {
@@ -211,14 +205,6 @@ fn watch(
         thread::sleep(pause.min(left));
         pause = PAUSE_MAX.min(2 * pause);
     }
-}
-
-/// Bytes that the trajectory of a scene takes with all the digits of every number.
-fn needed(scene: &Scene) -> u64 {
-    let row = |body: &scene::Body| 7 * NUMBER_BYTES + 2 * body.name.len() as u64 + 3;
-    let sample: u64 = scene.bodies.iter().map(row).sum();
-    let samples = scene.sample_count() as u64 + 2;
-    sample.saturating_mul(samples)
 }
 
 /// Why a status is not that of success.

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus};
+use std::process::{Command, ExitStatus};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
-use std::{fs, io, mem, thread};
+use std::{io, mem};
 
-use super::process::{self, Group};
+use super::folder::{Folder, remove};
+use super::process::{self, Group, Guest};
 
 /// The temporary folders there are, each with the group that works in it.
 static RUNNING: Mutex<BTreeMap<PathBuf, Option<Group>>> = Mutex::new(BTreeMap::new());
@@ -37,55 +37,52 @@ pub fn end_all() {
 /// A temporary folder and the solver that works in it. With the guard both end.
 #[derive(Debug)]
 pub(super) struct Running {
-    folder: PathBuf,
-    child: Option<Child>,
+    guest: Option<Guest>,
+    folder: Folder,
 }
 
 impl Running {
     /// An empty folder.
     pub fn open() -> io::Result<Self> {
         let mut all = running();
-        let folder = tempfile::Builder::new().prefix("carom-solver-").tempdir()?;
-        let folder = folder.keep();
-        all.insert(folder.clone(), None);
-        let child = None;
-        Ok(Self { folder, child })
+        let folder = Folder::open()?;
+        all.insert(folder.path().to_owned(), None);
+        let guest = None;
+        Ok(Self { guest, folder })
     }
 
     /// Where the folder is.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.folder.path()
     }
 
     /// Starts the solver.
     pub fn start(&mut self, command: &mut Command) -> io::Result<()> {
         let mut all = running();
-        let child = process::start(command)?;
-        all.insert(self.folder.clone(), Some(process::group(&child)));
-        self.child = Some(child);
+        let guest = Guest::start(command)?;
+        all.insert(self.folder().to_owned(), Some(guest.group()));
+        self.guest = Some(guest);
         Ok(())
     }
 
     /// Whether the solver has ended; its children may go on.
     pub fn has_ended(&mut self) -> io::Result<bool> {
-        self.child.as_mut().map_or(Ok(true), process::has_ended)
+        self.guest.as_mut().map_or(Ok(true), Guest::has_ended)
     }
 
     /// Ends the solver if it has not ended, and all its children; how it ended, none if it was
     /// never started or had been ended before.
     pub fn end(&mut self) -> io::Result<Option<ExitStatus>> {
-        let Some(mut child) = self.child.take() else {
+        let Some(guest) = self.guest.take() else {
             return Ok(None);
         };
         {
             // Before the leader is waited for: until then the group's number is its own.
             let mut all = running();
-            process::kill_group(process::group(&child));
-            all.insert(self.folder.clone(), None);
+            process::kill_group(guest.group());
+            all.insert(self.folder().to_owned(), None);
         }
-        // The leader itself, if it has left its group. That it has ended is no error.
-        let _ = child.kill();
-        child.wait().map(Some)
+        guest.wait().map(Some)
     }
 }
 
@@ -94,25 +91,17 @@ impl Drop for Running {
         // Nobody is left to be told.
         let _ = self.end();
         let mut all = running();
-        remove(&self.folder);
-        all.remove(&self.folder);
-    }
-}
-
-/// Removes a folder. One who was killed may still be on the way out and write a last file.
-fn remove(folder: &Path) {
-    for _ in 0..20 {
-        match fs::remove_dir_all(folder) {
-            Ok(()) => return,
-            Err(wrong) if wrong.kind() == io::ErrorKind::NotFound => return,
-            Err(_) => thread::sleep(Duration::from_millis(5)),
-        }
+        remove(self.folder());
+        all.remove(self.folder());
     }
 }
 
 #[cfg(all(test, unix))]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use std::thread;
+    use std::time::Duration;
 
     use super::*;
 
@@ -125,7 +114,7 @@ mod tests {
             folder = running.folder().to_owned();
             running.start(Command::new("sleep").arg("300")).unwrap();
             assert!(!running.has_ended().unwrap());
-            group = running.child.as_ref().map(process::group);
+            group = running.guest.as_ref().map(Guest::group);
             std::panic::resume_unwind(Box::new(()));
         }));
         assert!(unwound.is_err());

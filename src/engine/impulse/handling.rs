@@ -12,6 +12,8 @@ pub(super) struct Taken {
     pub(super) passes: u64,
     /// Pairs looked at for a contact.
     pub(super) pairs: u64,
+    /// All else, in units of a look at a pair; where it is counted.
+    pub(super) solving: u64,
 }
 
 /// A way to deal with rests, cushions and contacts.
@@ -51,6 +53,7 @@ impl<const PUSH_OUT: bool> Handling for Overlap<PUSH_OUT> {
         Taken {
             passes,
             pairs: u64::from(phases.contact.is_some()) * pairs(particles.len() as u64),
+            solving: 0,
         }
     }
 }

@@ -25,6 +25,9 @@ pub(super) trait Scheme {
     /// States were changed from outside.
     fn forget(&mut self);
 
+    /// Bounds the counted work, where a step can take much: a step that goes past it ends early.
+    fn limit(&mut self, _budget: u64) {}
+
     /// What was given up so far to go on.
     fn concessions(&self) -> Vec<Concession> {
         Vec::new()

@@ -23,6 +23,8 @@ pub struct ImpulseSimulation<S = Lecture> {
     grid: StepGrid,
     sample: usize,
     work: Work,
+    /// Past so much work it ends.
+    budget: u64,
     ledger: Option<Ledger>,
 }
 
@@ -46,6 +48,7 @@ impl<S: Scheme> ImpulseSimulation<S> {
             grid,
             sample: 0,
             work: Work::default(),
+            budget: u64::MAX,
             ledger: None,
         }
     }
@@ -57,15 +60,20 @@ impl<S: Scheme> ImpulseSimulation<S> {
         }
     }
 
-    /// Takes steps up to a sample, each told the time at its end.
-    fn go_on(&mut self, sample: usize, mut step: impl FnMut(&mut Self, f64)) {
+    /// Takes steps up to a sample, each told the time at its end; gives the outcome if the work
+    /// allowed is spent before.
+    fn go_on(&mut self, sample: usize, mut step: impl FnMut(&mut Self, f64)) -> Option<Outcome> {
         while self.sample < sample {
             self.sample += 1;
             for count in 1..=self.grid.steps_per_sample {
                 let time = self.grid.time(self.sample, count);
                 step(self, time);
+                if self.work.total() > self.budget {
+                    return Some(Outcome::BudgetSpent { time });
+                }
             }
         }
+        None
     }
 
     #[inline]
@@ -76,6 +84,7 @@ impl<S: Scheme> ImpulseSimulation<S> {
             .step(phases, particles, self.grid.step, observer);
         self.work.steps += 1;
         self.work.pair_tests += taken.pairs;
+        self.work.solving += taken.solving;
         self.work.force_evaluations += taken.passes * phases.forces_a_pass(particles.len() as u64);
     }
 }
@@ -84,13 +93,13 @@ impl<S: Scheme> ImpulseSimulation<S> {
 impl<S: Scheme> Simulation for ImpulseSimulation<S> {
     fn advance_to(&mut self, sample: usize, mut log: Option<&mut EventLog>) -> Option<Outcome> {
         if let Some(mut ledger) = self.ledger.take() {
-            self.go_on(sample, |this, time| {
+            let spent = self.go_on(sample, |this, time| {
                 let scribe = log.as_deref_mut().map(|log| Scribe { log, time });
                 let ledger = &mut ledger;
                 this.step(&mut Bookkeeper { ledger, scribe });
             });
             self.ledger = Some(ledger);
-            return None;
+            return spent;
         }
         let Some(log) = log else {
             let intervals = sample.saturating_sub(self.sample) as u64;
@@ -98,8 +107,7 @@ impl<S: Scheme> Simulation for ImpulseSimulation<S> {
             self.sample = self.sample.max(sample);
             return None;
         };
-        self.go_on(sample, |this, time| this.step(&mut Scribe { log, time }));
-        None
+        self.go_on(sample, |this, time| this.step(&mut Scribe { log, time }))
     }
 
     fn state_into(&self, into: &mut [BodyState]) {
@@ -122,6 +130,11 @@ impl<S: Scheme> Simulation for ImpulseSimulation<S> {
 
     fn work(&self) -> Work {
         self.work
+    }
+
+    fn limit(&mut self, budget: u64) {
+        self.budget = budget;
+        self.scheme.limit(budget);
     }
 
     fn keep_ledger(&mut self) -> bool {

@@ -11,21 +11,27 @@ pub use tables::bodies_table;
 
 use std::io::{self, Write};
 
+use serde::Serialize;
+
 use super::Folder;
 use crate::error::Result;
-use crate::study::bodies::BodiesStudy;
+use crate::study::bodies::{BodiesPoint, BodiesStudy};
 
-/// Whether a file is one of an earlier study.
-fn is_stale(name: &str) -> bool {
-    ["README.md", "bodies.csv", "cost-bodies.png"].contains(&name)
+/// The files of a study of cost against the number of bodies.
+pub const BODIES_FILES: [&str; 4] = ["bodies.csv", "cost-bodies.png", "README.md", "summary.json"];
+
+/// The summary, for programs.
+#[derive(Debug, Serialize)]
+struct BodiesSummary<'a> {
+    build: &'a str,
+    points: &'a [BodiesPoint],
 }
 
-/// Writes `bodies.csv`, the picture and the page.
+/// Writes `bodies.csv`, the picture, the page and the summary.
 ///
 /// # Errors
-/// A file that cannot be written, with its name; each file is whole or not there.
+/// A file that cannot be written, with its name.
 pub fn write_bodies(folder: &Folder, study: &BodiesStudy) -> Result<()> {
-    folder.remove(is_stale)?;
     folder.write("bodies.csv", |out| write_points(study, out))?;
     #[cfg(feature = "plots")]
     {
@@ -33,7 +39,11 @@ pub fn write_bodies(folder: &Folder, study: &BodiesStudy) -> Result<()> {
         folder.write("cost-bodies.png", |out| out.write_all(&picture))?;
     }
     let page = page::page(study, cfg!(feature = "plots"))?;
-    folder.write("README.md", |out| out.write_all(page.as_bytes()))
+    folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    folder.write_summary(&BodiesSummary {
+        build: &study.build,
+        points: &study.points,
+    })
 }
 
 /// Writes `bodies.csv`: a row for every engine at every size, those over their budget included.

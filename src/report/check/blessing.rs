@@ -1,12 +1,11 @@
 //! What a blessing changes, shown before it is written.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::case::{baseline_file, thinning, with_profile};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, harmless};
 use crate::recording::write_trajectory;
-use crate::report::Folder;
+use crate::report::{Output, Replace};
 use crate::scene::Scene;
 use crate::study::check::Blessing;
 
@@ -17,12 +16,9 @@ pub fn blessing_text(blessings: &[Blessing]) -> String {
     for blessing in blessings {
         for change in &blessing.changes {
             let mark = if change.widens { "  WIDER" } else { "" };
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{} {}: {}{mark}",
-                blessing.like, blessing.case, change.what
-            );
+            let line = format!("{} {}: {}{mark}", blessing.like, blessing.case, change.what);
+            text.push_str(&harmless(&line));
+            text.push('\n');
         }
     }
     text
@@ -39,7 +35,8 @@ pub fn write_blessing(
     text: Option<&str>,
     blessing: &Blessing,
 ) -> Result<String> {
-    let folder = Folder::open(&library.join(&scene.name))?;
+    let output = Output::open(&library.join(&scene.name), Replace::Named)?;
+    let folder = output.folder();
     let (like, derived) = (&blessing.like, &blessing.derived);
     let text = with_profile(text, like, &derived.profile).map_err(|wrong| Error::Profile {
         case: scene.name.clone(),
@@ -50,5 +47,6 @@ pub fn write_blessing(
         Ok(write_trajectory(&derived.baseline, &thinned, out)?)
     })?;
     folder.write("expected.toml", |out| out.write_all(text.as_bytes()))?;
+    output.commit()?;
     Ok(text)
 }

@@ -1,16 +1,22 @@
 //! A check as text: a line a case, and all there is to know where something fails.
 
-use std::fmt::Write;
+use std::borrow::BorrowMut as _;
 
 use crate::case::Metric;
+use crate::error::harmless;
 use crate::report::{engineering, percent};
 use crate::study::check::{Against, CaseCheck, CheckReport, Comparison, Held, Replay, Row};
 
-/// Writing to a string cannot fail.
+/// Adds a line; foreign text in it cannot begin another one.
 macro_rules! add {
-    ($($arguments:tt)*) => {
-        let _ = writeln!($($arguments)*);
+    ($text:ident, $($arguments:tt)*) => {
+        add_line($text.borrow_mut(), &format!($($arguments)*));
     };
+}
+
+fn add_line(text: &mut String, line: &str) {
+    text.push_str(&harmless(line));
+    text.push('\n');
 }
 
 /// The report of a check; with `all`, every metric of every case.
@@ -42,7 +48,8 @@ fn of_solver(text: &mut String, checks: &[CaseCheck], all: bool) {
     }
     topics(text, checks);
     let held = checks.iter().filter(|check| check.holds()).count();
-    add!(text, "{solver}: {held} of {} cases hold\n", checks.len());
+    add!(text, "{solver}: {held} of {} cases hold", checks.len());
+    text.push('\n');
 }
 
 fn heading(check: &CaseCheck) -> String {

@@ -20,9 +20,11 @@ mod tuning;
 pub(super) use findings::headline;
 pub(super) use section::CostSection;
 
+use std::collections::BTreeSet;
+
 use super::Folder;
-use super::output::write_json;
 use crate::error::Result;
+use crate::scene::Scene;
 use crate::study::cost::{CostOptions, CostSummary, SceneCost, SceneCostSummary, Tuning};
 use page::ScenePart;
 
@@ -36,74 +38,86 @@ fn prices_picture(scene: &str) -> String {
     format!("prices-{scene}.png")
 }
 
-/// Whether a file is one of an earlier study.
-fn is_stale(name: &str) -> bool {
-    let picture = name.strip_suffix(".png").unwrap_or_default();
-    ["work-precision-", "prices-"]
-        .iter()
-        .any(|kind| picture.starts_with(kind))
-        || [
-            "README.md",
-            "cost.csv",
-            "work.csv",
-            "orders.csv",
-            "phases.csv",
-            "limits.csv",
-            "push-out.csv",
-            "tuning.csv",
-            "summary.json",
-        ]
-        .contains(&name)
+/// The pictures of a study that are there.
+pub(super) fn cost_pictures(folder: &Folder, study: &CostSummary) -> BTreeSet<String> {
+    let names = study.scenes.iter().map(|found| &found.scene);
+    names
+        .flat_map(|scene| [work_picture(scene), prices_picture(scene)])
+        .filter(|name| folder.current(name).is_file())
+        .collect()
 }
 
-/// A study of cost in the making: what it has found, and the folder that tells of it.
+/// The tables of a study; the last one only of a study that tunes.
+const TABLES: [&str; 7] = [
+    "cost.csv",
+    "work.csv",
+    "orders.csv",
+    "phases.csv",
+    "limits.csv",
+    "push-out.csv",
+    "tuning.csv",
+];
+
+/// Sees before a study of these scenes that its files may be written, those of an unfinished one
+/// too.
+///
+/// # Errors
+/// Those of [`Folder::claim`].
+pub fn claim_cost(folder: &Folder, scenes: &[&Scene]) -> Result<()> {
+    let pictures = scenes.iter().map(|scene| scene.name.as_str());
+    let pictures: Vec<String> = pictures
+        .flat_map(|name| [work_picture(name), prices_picture(name)])
+        .collect();
+    let names = TABLES.into_iter().chain(["README.md", "summary.json"]);
+    let names = names.chain(pictures.iter().map(String::as_str));
+    folder.claim(names.clone())?;
+    folder.unfinished().claim(names)
+}
+
+/// A study of cost in the making: what it has found.
 #[derive(Debug)]
 pub struct CostReport {
-    folder: Folder,
     summary: CostSummary,
     /// What was tuned beforehand on other scenes, if anything was.
     tuning: Option<Tuning>,
     costs: Vec<SceneCost>,
     parts: Vec<ScenePart>,
+    /// Pictures by their file names.
+    pictures: Vec<(String, Vec<u8>)>,
 }
 
 impl CostReport {
-    /// A study with nothing found yet; the folder is left alone until there is.
+    /// A study with nothing found yet.
     #[must_use]
-    pub fn begin(folder: Folder, options: CostOptions, tuning: Option<Tuning>) -> Self {
+    pub fn begin(options: CostOptions, tuning: Option<Tuning>) -> Self {
         Self {
-            folder,
             summary: CostSummary::begin(options),
             tuning,
             costs: Vec::new(),
             parts: Vec::new(),
+            pictures: Vec::new(),
         }
     }
 
-    /// Adds what was found on a scene and writes the whole again, so that a study that is
-    /// interrupted leaves what it has.
+    /// Adds what was found on a scene.
     ///
     /// # Errors
-    /// A file that cannot be written, with its name; each file is whole or not there.
+    /// A picture that cannot be drawn.
     pub fn add(&mut self, cost: SceneCost) -> Result<()> {
-        if self.costs.is_empty() {
-            self.folder.remove(is_stale)?;
-        }
         let scene = SceneCostSummary::of(&cost, self.seed())?;
         #[cfg(feature = "plots")]
         {
             let name = &scene.scene;
             let work = picture::work_precision_png(&cost, &scene)?;
             let prices = prices_picture::prices_png(&scene)?;
-            for (name, png) in [(work_picture(name), work), (prices_picture(name), prices)] {
-                self.folder.write(&name, |out| out.write_all(&png))?;
-            }
+            self.pictures.push((work_picture(name), work));
+            self.pictures.push((prices_picture(name), prices));
         }
         let options = &self.summary.options;
         self.parts.push(ScenePart::of(&cost, &scene, options));
         self.summary.scenes.push(scene);
         self.costs.push(cost);
-        self.write()
+        Ok(())
     }
 
     /// Seed of the intervals.
@@ -111,8 +125,14 @@ impl CostReport {
         self.summary.options.timing.seed
     }
 
-    fn write(&self) -> Result<()> {
-        let folder = &self.folder;
+    /// Writes what was found so far.
+    ///
+    /// # Errors
+    /// A file that cannot be written, with its name.
+    pub fn write(&self, folder: &Folder) -> Result<()> {
+        for (name, png) in &self.pictures {
+            folder.write(name, |out| out.write_all(png))?;
+        }
         folder.write("cost.csv", |out| tables::write_points(&self.costs, out))?;
         folder.write("work.csv", |out| tables::write_work(&self.costs, out))?;
         folder.write("orders.csv", |out| tables::write_orders(&self.costs, out))?;
@@ -132,6 +152,6 @@ impl CostReport {
         }
         let page = page::page(&self.summary, &self.parts, tuned)?;
         folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
-        folder.write("summary.json", |out| write_json(out, &self.summary))
+        folder.write_summary(&self.summary)
     }
 }

@@ -1,7 +1,5 @@
 //! What the page of a case tells of a study of cost.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use super::findings::of_scene;
@@ -23,11 +21,15 @@ pub(crate) struct CostSection {
 }
 
 impl CostSection {
-    /// The results on a scene of a study whose files are in `folder`, if it has been measured.
-    pub(crate) fn of(study: &CostSummary, scene: &Scene, folder: &Path) -> Option<Self> {
+    /// The results on a scene, if it has been measured; `is_there` knows the study's files.
+    pub(crate) fn of(
+        study: &CostSummary,
+        scene: &Scene,
+        is_there: impl Fn(&str) -> bool,
+    ) -> Option<Self> {
         let found = study.scene(&scene.name)?;
         let mut pictures = vec![work_picture(&found.scene), prices_picture(&found.scene)];
-        pictures.retain(|name| folder.join(name).is_file());
+        pictures.retain(|name| is_there(name));
         Some(Self {
             scene: found.scene.clone(),
             changed: !found.is_of(scene),

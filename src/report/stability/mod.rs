@@ -12,7 +12,6 @@ pub use findings::stability_findings;
 pub use tables::stability_table;
 
 use super::Folder;
-use super::output::write_json;
 use crate::error::Result;
 use crate::study::stability::{MapKind, StabilityMap, StabilityStudy, StabilitySummary};
 
@@ -20,7 +19,7 @@ use crate::study::stability::{MapKind, StabilityMap, StabilityStudy, StabilitySu
 const MATRIX: &str = "stability.png";
 
 /// The table of a map.
-fn map_table(kind: MapKind) -> &'static str {
+const fn map_table(kind: MapKind) -> &'static str {
     match kind {
         MapKind::Spring => "springs.csv",
         MapKind::Orbit => "orbits.csv",
@@ -28,40 +27,37 @@ fn map_table(kind: MapKind) -> &'static str {
 }
 
 /// The picture of a map.
-fn map_picture(kind: MapKind) -> &'static str {
+const fn map_picture(kind: MapKind) -> &'static str {
     match kind {
         MapKind::Spring => "springs.png",
         MapKind::Orbit => "orbits.png",
     }
 }
 
-/// Whether a file is one of an earlier study.
-fn is_stale(name: &str) -> bool {
-    let maps = [MapKind::Spring, MapKind::Orbit];
-    let of_map = |kind: &MapKind| [map_table(*kind), map_picture(*kind)].contains(&name);
-    maps.iter().any(of_map)
-        || [
-            "README.md",
-            "stability.csv",
-            "failures.csv",
-            MATRIX,
-            "summary.json",
-        ]
-        .contains(&name)
-}
+/// The files of a study of stability, with all its maps.
+pub const STABILITY_FILES: [&str; 9] = [
+    "stability.csv",
+    "failures.csv",
+    map_table(MapKind::Spring),
+    map_table(MapKind::Orbit),
+    MATRIX,
+    map_picture(MapKind::Spring),
+    map_picture(MapKind::Orbit),
+    "README.md",
+    "summary.json",
+];
 
 /// Writes `stability.csv`, `failures.csv`, a table for each map, the pictures, the summary and the
 /// page; gives the summary.
 ///
 /// # Errors
-/// A file that cannot be written, with its name; each file is whole or not there.
+/// A file that cannot be written, with its name.
 pub fn write_stability(
     folder: &Folder,
     study: &StabilityStudy,
     maps: &[StabilityMap],
 ) -> Result<StabilitySummary> {
     let summary = StabilitySummary::of(study);
-    folder.remove(is_stale)?;
     folder.write("stability.csv", |out| tables::write_cells(study, out))?;
     folder.write("failures.csv", |out| tables::write_failures(study, out))?;
     for map in maps {
@@ -77,8 +73,8 @@ pub fn write_stability(
             folder.write(name, |out| out.write_all(&png))?;
         }
     }
-    folder.write("summary.json", |out| write_json(out, &summary))?;
     let page = page::page(study, &summary, maps)?;
     folder.write("README.md", |out| out.write_all(page.as_bytes()))?;
+    folder.write_summary(&summary)?;
     Ok(summary)
 }

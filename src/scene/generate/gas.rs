@@ -1,8 +1,8 @@
 //! An elastic gas of hard spheres that starts on a lattice.
 
 use super::Random;
-use crate::error::{Error, Result};
-use crate::scene::{Body, Contact, Cushions, Effects, LengthUnit, Scene, Units};
+use crate::error::{Error, Result, number};
+use crate::scene::{BODIES_MAX, Body, Contact, Cushions, Effects, LengthUnit, Scene, Units};
 
 /// Equal spheres on a face-centred cubic lattice in a closed cubic box, with random velocities.
 ///
@@ -34,8 +34,9 @@ impl Default for Gas {
 
 const RADIUS: f64 = 0.5;
 
-/// A lattice of more cells an edge is a slip of the pen.
-const CELLS_MAX: usize = 63;
+/// Cells an edge: as many bodies as a scene may have.
+const CELLS_MAX: usize = 20;
+const _: () = assert!(4 * CELLS_MAX.pow(3) == BODIES_MAX);
 
 /// The four places in a cell, in lattice constants.
 const BASIS: [[f64; 3]; 4] = [
@@ -56,18 +57,25 @@ impl Gas {
             return Err(Error::Argument {
                 argument: "cells",
                 found: self.cells.to_string(),
-                remedy: format!("give 1 to {CELLS_MAX} cells an edge (4 to 1,000,188 spheres)"),
+                remedy: format!("give 1 to {CELLS_MAX} cells an edge (4 to {BODIES_MAX} spheres)"),
             });
         }
-        #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+        #[allow(clippy::cast_precision_loss, reason = "20 cells at most")]
         let cells = self.cells as f64;
         let volume = 16.0 * std::f64::consts::PI * (RADIUS * cells).powi(3) / (3.0 * self.filling);
         let half = 0.5 * volume.cbrt();
+        if !half.is_finite() {
+            return Err(Error::Argument {
+                argument: "filling",
+                found: number(self.filling),
+                remedy: "the box is too large for a number; give a larger fraction".into(),
+            });
+        }
         let constant = 2.0 * half / (cells - 0.5 + 0.5_f64.sqrt());
         if constant * 0.5_f64.sqrt() <= 2.0 * RADIUS {
             return Err(Error::Argument {
                 argument: "filling",
-                found: self.filling.to_string(),
+                found: number(self.filling),
                 remedy: format!(
                     "{} cells an edge do not fit between the walls; give a smaller fraction or more cells",
                     self.cells
@@ -77,7 +85,12 @@ impl Gas {
         let scene = Scene {
             name: format!("gas-{}", 4 * self.cells.pow(3)),
             title: Some(format!("elastic gas of {} spheres", 4 * self.cells.pow(3))),
-            source: Some(format!("carom scenes generate gas --seed {}", self.seed)),
+            source: Some(format!(
+                "carom scenes generate gas --cells {} --filling {} --seed {}",
+                self.cells,
+                number(self.filling),
+                self.seed
+            )),
             watch: None,
             duration: 1.0,
             sample_every: 0.0625,
@@ -118,7 +131,7 @@ impl Gas {
             .filter(|_| count > 0)
             .ok_or_else(|| wrong(format!("give 1 to {} spheres", places(&CELLS_MAX))))?;
         let places = places(&cells);
-        #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
+        #[allow(clippy::cast_precision_loss, reason = "some ten thousand spheres")]
         let full = Self {
             cells,
             filling: filling * places as f64 / count as f64,
@@ -142,7 +155,8 @@ impl Gas {
         scene.name = format!("gas-{count}");
         scene.title = Some(format!("elastic gas of {count} spheres"));
         scene.source = Some(format!(
-            "carom scenes generate gas --count {count} --filling {filling} --seed {seed}"
+            "carom scenes generate gas --count {count} --filling {} --seed {seed}",
+            number(filling)
         ));
         scene.checked()?;
         Ok(scene)
@@ -150,7 +164,7 @@ impl Gas {
 
     fn bodies(&self, constant: f64) -> Vec<Body> {
         let mut random = Random::new(self.seed);
-        #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+        #[allow(clippy::cast_precision_loss, reason = "20 cells at most")]
         let middle = 0.5 * self.cells as f64;
         let mut bodies = Vec::new();
         for cell in 0..self.cells.pow(3) {
@@ -160,7 +174,7 @@ impl Gas {
                 cell / self.cells.pow(2),
             ];
             for place in BASIS {
-                #[allow(clippy::cast_precision_loss, reason = "63 cells at most")]
+                #[allow(clippy::cast_precision_loss, reason = "20 cells at most")]
                 let position =
                     [0, 1, 2].map(|axis| constant * (corner[axis] as f64 + place[axis] - middle));
                 bodies.push(Body {
@@ -185,14 +199,14 @@ fn check_filling(filling: f64) -> Result<()> {
     }
     Err(Error::Argument {
         argument: "filling",
-        found: filling.to_string(),
+        found: number(filling),
         remedy: format!("give a fraction above 0 and below {packed:.4}, close packing"),
     })
 }
 
 /// Takes the mean out of the velocities.
 fn put_at_rest(bodies: &mut [Body]) {
-    #[allow(clippy::cast_precision_loss, reason = "a million spheres at most")]
+    #[allow(clippy::cast_precision_loss, reason = "some ten thousand spheres")]
     let count = bodies.len() as f64;
     let mean = [0, 1, 2].map(|axis| bodies.iter().map(|b| b.velocity[axis]).sum::<f64>() / count);
     for body in bodies {

@@ -1,7 +1,8 @@
 //! A rack of balls and a cue ball that breaks it.
 
 use super::Random;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number};
+use crate::scene::overlap::survey;
 use crate::scene::{Body, Contact, Cushions, Drag, Effects, LengthUnit, Rest, Scene, Units};
 
 /// A triangle of balls on the lecture's table, and a cue ball shot at its head.
@@ -38,6 +39,9 @@ const MASS: f64 = 0.16;
 const HALF_WIDTH: f64 = 710.0;
 const HALF_LENGTH: f64 = 1420.0;
 
+/// Share of a radius by which rounding may make balls overlap that touch.
+const ROUNDING: f64 = 1e-12;
+
 impl Rack {
     /// Makes the scene.
     ///
@@ -51,10 +55,12 @@ impl Rack {
                 remedy: "give 1 or more".into(),
             });
         }
+        check_length("gap", self.gap)?;
+        check_length("jitter", self.jitter)?;
         #[allow(clippy::cast_precision_loss, reason = "a handful of rows")]
         let rows = self.rows as f64;
         let pitch = 2.0 * RADIUS + self.gap;
-        if !(pitch.is_finite() && rows * pitch + self.jitter < 2.0 * HALF_WIDTH) {
+        if rows * pitch + self.jitter >= 2.0 * HALF_WIDTH {
             return Err(Error::Argument {
                 argument: "rows",
                 found: self.rows.to_string(),
@@ -84,7 +90,7 @@ impl Rack {
         let scene = Scene {
             name: format!("rack-{}", bodies.len() - 1),
             title: Some(format!("break of a rack of {} balls", bodies.len() - 1)),
-            source: Some(format!("carom scenes generate rack --seed {}", self.seed)),
+            source: Some(self.command()),
             watch: None,
             duration: 4.0,
             sample_every: 0.0625,
@@ -106,7 +112,64 @@ impl Rack {
             },
         };
         scene.checked()?;
+        if let Some(what) = not_free(&scene) {
+            return Err(Error::Argument {
+                argument: "rows",
+                found: self.rows.to_string(),
+                remedy: format!(
+                    "{what}; take fewer rows, another gap or a jitter below half the gap"
+                ),
+            });
+        }
         Ok(scene)
+    }
+
+    /// The command that makes it again; a seed says nothing where no ball is moved.
+    fn command(&self) -> String {
+        let gap = number(self.gap);
+        let rack = format!(
+            "carom scenes generate rack --rows {} --gap {gap}",
+            self.rows
+        );
+        if self.jitter == 0.0 {
+            return rack;
+        }
+        format!(
+            "{rack} --jitter {} --seed {}",
+            number(self.jitter),
+            self.seed
+        )
+    }
+}
+
+fn check_length(argument: &'static str, length: f64) -> Result<()> {
+    if length.is_finite() && length >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::Argument {
+        argument,
+        found: number(length),
+        remedy: "give a length of 0 or more, mm".into(),
+    })
+}
+
+/// Which ball stands in another or in a cushion. Balls without a gap touch to rounding.
+fn not_free(scene: &Scene) -> Option<String> {
+    let spheres: Vec<_> = scene
+        .bodies
+        .iter()
+        .map(|body| (body.position.into(), body.radius))
+        .collect();
+    let deepest = survey(&spheres, u64::MAX).deepest;
+    let overlap = deepest.filter(|found| found.depth > ROUNDING * RADIUS);
+    let half = [HALF_WIDTH, f64::INFINITY, HALF_LENGTH];
+    let is_outside =
+        |body: &&Body| (0..3).any(|axis| body.position[axis].abs() + RADIUS > half[axis]);
+    let name = |body: usize| &scene.bodies[body].name;
+    match (overlap, scene.bodies.iter().find(is_outside)) {
+        (Some(pair), _) => Some(format!("`{}` and `{}` overlap", name(pair.a), name(pair.b))),
+        (None, Some(body)) => Some(format!("`{}` stands in a cushion", body.name)),
+        (None, None) => None,
     }
 }
 

@@ -1,23 +1,27 @@
 //! Points that another build has measured.
 
-use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{BodiesOptions, BodiesPoint};
 use crate::engine::build;
 use crate::error::{Error, Result};
+use crate::input::{self, Rows, STORED_BYTES_MAX};
 
 /// Reads a `bodies.csv`.
 ///
 /// # Errors
 /// [`Error::Read`] and [`Error::Table`] with the file, and the line where there is one.
 fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
-    let input = File::open(file).map_err(|source| Error::read(file, source))?;
-    let mut table = csv::Reader::from_reader(input);
-    let rows = table.deserialize();
-    let points: Vec<BodiesPoint> = rows
-        .collect::<std::result::Result<_, csv::Error>>()
-        .map_err(|wrong| complaint(file, &wrong))?;
+    let (rows, row_end) = Rows::new(input::open(file, STORED_BYTES_MAX)?);
+    let mut table = csv::Reader::from_reader(rows);
+    // What cannot be read of the header would else pass for the end of the file.
+    table.headers().map_err(|wrong| complaint(file, &wrong))?;
+    let mut points: Vec<BodiesPoint> = Vec::new();
+    for point in table.deserialize() {
+        points.push(point.map_err(|wrong| complaint(file, &wrong))?);
+        row_end.tell();
+    }
     if points.is_empty() {
         return Err(Error::Table {
             file: file.display().to_string(),
@@ -29,6 +33,9 @@ fn read_bodies(file: &Path) -> Result<Vec<BodiesPoint>> {
 }
 
 fn complaint(file: &Path, wrong: &csv::Error) -> Error {
+    if let csv::ErrorKind::Io(wrong) = wrong.kind() {
+        return Error::read(file, io::Error::new(wrong.kind(), wrong.to_string()));
+    }
     Error::Table {
         file: file.display().to_string(),
         line: wrong.position().map_or(1, csv::Position::line),

@@ -113,7 +113,7 @@ impl<'a> Taking<'a> {
 
 /// Work in the units of the budget.
 fn units(work: Work, bodies: usize) -> u64 {
-    work.steps * bodies as u64 + work.pair_tests + work.force_evaluations
+    work.steps * bodies as u64 + work.pair_tests + work.force_evaluations + work.solving
 }
 
 /// Every engine with one number of bodies.

@@ -92,6 +92,23 @@ impl Later {
             reference,
         }))
     }
+
+    /// Every engine over its ladder from this start.
+    fn points(
+        &self,
+        specs: &[&EngineSpec],
+        options: &CostOptions,
+        watch: Watcher,
+    ) -> Result<Vec<CostPoint>> {
+        let contender = |spec: &&EngineSpec| Contender {
+            setting: STOCK.to_owned(),
+            spec: (*spec).clone(),
+            scene: self.scene.clone(),
+        };
+        let contenders: Vec<Contender> = specs.iter().map(contender).collect();
+        let runs = runs(&contenders, options);
+        Ok(errors(&self.scene, &runs, Some(&self.reference), watch)?.0)
+    }
 }
 
 /// Runs every engine over its ladder from every start that the exact engine can take.
@@ -106,22 +123,20 @@ pub(super) fn phases(
     watch: Watcher,
 ) -> Result<Vec<Phase>> {
     let all = shifts(options.phases, scene.sample_every, options.timing.seed);
-    let starts = all
-        .par_iter()
-        .map(|shift| Ok(Later::of(scene, *shift, known)?.map(|later| (*shift, later))));
-    let starts: Vec<_> = starts.collect::<Result<_>>()?;
     let mut found = Vec::new();
-    for (place, (shift, later)) in starts.into_iter().flatten().enumerate() {
-        let contender = |spec: &&EngineSpec| Contender {
-            setting: STOCK.to_owned(),
-            spec: (*spec).clone(),
-            scene: later.scene.clone(),
-        };
-        let contenders: Vec<Contender> = specs.iter().map(contender).collect();
-        let runs = runs(&contenders, options);
-        let watch = |_, done, all| watch(Stage::Phases, place * all + done, options.phases * all);
-        let (points, _) = errors(&later.scene, &runs, Some(&later.reference), &watch)?;
-        found.push(Phase { shift, points });
+    // As many references at once as can be made at once.
+    for shifts in all.chunks(rayon::current_num_threads()) {
+        let starts = shifts
+            .par_iter()
+            .map(|shift| Ok(Later::of(scene, *shift, known)?.map(|later| (*shift, later))));
+        let starts: Vec<_> = starts.collect::<Result<_>>()?;
+        for (shift, later) in starts.into_iter().flatten() {
+            let place = found.len();
+            let watch =
+                |_, done, all| watch(Stage::Phases, place * all + done, options.phases * all);
+            let points = later.points(specs, options, &watch)?;
+            found.push(Phase { shift, points });
+        }
     }
     Ok(found)
 }

@@ -1,14 +1,14 @@
 //! `drift/workers.toml`: which versions of Rapier there are workers of, and what is known of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::{Measure, Verdict};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, quoted};
+use crate::input;
 use crate::scene::fault::fault;
-use crate::scene::{Fault, FieldPath, parse_checked};
+use crate::scene::{Fault, FieldPath, TEXT_BYTES_MAX, parse_checked};
 
 /// The file in the folder of workers.
 const FILE: &str = "workers.toml";
@@ -84,10 +84,8 @@ impl Workers {
                 ),
             });
         }
-        let bytes = fs::read(&path).map_err(|source| Error::read(&path, source))?;
-        let file = path.display().to_string();
-        let text = String::from_utf8(bytes).map_err(|wrong| Error::not_utf8(&file, &wrong))?;
-        Self::parse(&text, &file, folder)
+        let text = input::text(&path, TEXT_BYTES_MAX)?;
+        Self::parse(&text, &path.display().to_string(), folder)
     }
 
     /// Parses the text of `workers.toml`; `file` is its name in messages, `folder` holds the
@@ -108,7 +106,7 @@ impl Workers {
         for (index, version) in self.versions.iter().enumerate() {
             let path = FieldPath::default().key("worker").index(index);
             let at = path.clone().key("version");
-            let shown = format!("`{}`", version.version);
+            let shown = format!("`{}`", quoted(&version.version));
             let is_plain = |c: char| c.is_ascii_alphanumeric() || ".-+".contains(c);
             if version.version.is_empty() || !version.version.chars().all(is_plain) {
                 return Err(fault(at, shown, "give a version such as 0.36.1"));
@@ -163,12 +161,12 @@ impl Version {
                 if !known.contains(name) {
                     let remedy =
                         format!("there is no such measure; there are: {}", known.join(", "));
-                    return Err(fault(at, format!("`{name}`"), remedy));
+                    return Err(fault(at, format!("`{}`", quoted(name)), remedy));
                 }
                 let of_sweep = !super::CASES.contains(&name.as_str());
                 if key == "moved" && (of_sweep || self.red.contains(name)) {
                     let remedy = "only a case moves, and one that is red is not in this list too";
-                    return Err(fault(at, format!("`{name}`"), remedy));
+                    return Err(fault(at, format!("`{}`", quoted(name)), remedy));
                 }
             }
         }

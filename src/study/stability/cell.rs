@@ -127,7 +127,7 @@ pub fn judge(
     };
     let first = crossing.or(first);
     let phase = match &first {
-        Some(first) => guilty(fine.as_ref().unwrap_or(scene), spec, dt, first)?,
+        Some(first) => guilty(fine.as_ref().unwrap_or(scene), spec, (dt, budget), first)?,
         None => None,
     };
     let outcome = first.as_ref().map_or("Finished", Breach::word);
@@ -202,12 +202,18 @@ fn energy_crossing(fine: &Scene, expected: &Expected, spec: &EngineSpec) -> Resu
 
 /// The phase that did most of what a breach complains of, up to its time, by the books of the
 /// engine; none where nobody keeps books or they do not tell.
-fn guilty(scene: &Scene, spec: &EngineSpec, dt: f64, breach: &Breach) -> Result<Option<Account>> {
+fn guilty(
+    scene: &Scene,
+    spec: &EngineSpec,
+    (dt, budget): (f64, u64),
+    breach: &Breach,
+) -> Result<Option<Account>> {
     if !matches!(spec.kind, EngineKind::Impulse(_)) {
         return Ok(None);
     }
     let mut simulation = prepare(scene, spec, dt)?;
     simulation.keep_ledger();
+    simulation.limit(budget);
     let mut states = initial_states(scene);
     let mut books = None;
     for sample in 1..=scene.sample_count() {

@@ -10,8 +10,9 @@ use paths::{Import, imports};
 use tokens::tokens;
 
 /// The rooms from the ground up.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "error",
+    "input",
     "scene",
     "physics",
     "recording",

@@ -1,11 +1,12 @@
 //! A scene as this engine needs it: bodies, law of flight, walls, rules; what it must refuse.
 
 use super::law::{Fixed, Law, State};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, code};
 use crate::physics::real::{Real, vector};
 use crate::recording::Wall;
+use crate::scene::LOOKS_MAX;
 use crate::scene::Scene;
-use crate::scene::overlap::overlaps;
+use crate::scene::overlap::survey;
 
 /// Events nearer than this many units of rounding of the duration are simultaneous.
 const TIE_ROUNDINGS: f64 = 64.0;
@@ -194,8 +195,9 @@ fn beyond_wall(scene: &Scene) -> Option<String> {
             let depth = plane.side * body.position[plane.axis] + body.radius - plane.half;
             if depth > room {
                 return Some(format!(
-                    "`{}` starts beyond the wall {} by {depth:.3e}",
-                    body.name, plane.wall
+                    "{} starts beyond the wall {} by {depth:.3e}",
+                    code(&body.name),
+                    plane.wall
                 ));
             }
         }
@@ -210,12 +212,24 @@ fn overlapping(scene: &Scene) -> Option<String> {
         .iter()
         .map(|body| (body.position.into(), body.radius))
         .collect();
-    let found = overlaps(&spheres);
-    let deepest = found.iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+    // The first of many overlaps are enough to refuse the scene.
+    let some = survey(&spheres, LOOKS_MAX);
+    let found = if some.all
+        || some
+            .deepest
+            .is_some_and(|deepest| deepest.depth > rounding(scene))
+    {
+        some
+    } else {
+        survey(&spheres, u64::MAX)
+    };
+    let deepest = found.deepest?;
     (deepest.depth > rounding(scene)).then(|| {
         format!(
-            "`{}` and `{}` overlap at the start by {:.3e}",
-            scene.bodies[deepest.a].name, scene.bodies[deepest.b].name, deepest.depth
+            "{} and {} overlap at the start by {:.3e}",
+            code(&scene.bodies[deepest.a].name),
+            code(&scene.bodies[deepest.b].name),
+            deepest.depth
         )
     })
 }

@@ -257,6 +257,7 @@ impl<R: Real> Simulation for FlightSimulation<R> {
             steps: self.events,
             pair_tests: self.world.pair_tests,
             force_evaluations: 0,
+            solving: 0,
         }
     }
 }

@@ -6,12 +6,13 @@ use super::simulation::{ForcesSimulation, Undetermined};
 use super::ties::Judge;
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
-use crate::engine::exact::claim::Scale;
+use crate::engine::exact::claim::{Scale, claims};
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
 use crate::engine::exact::ties::{Noted, SAME};
 use crate::error::Result;
-use crate::physics::{BodyState, Vector3};
+use crate::physics::BodyState;
+use crate::physics::real::Real;
 use crate::recording::{
     self, COMPARABLE_DIGITS, EventLog, Outcome, Recording, Work, initial_states,
 };
@@ -27,12 +28,27 @@ const WIDE_OPERATIONS: u64 = 1_000_000_000;
 /// Operations in doubles after which an undetermined cluster is no longer certified.
 const SETTLING_OPERATIONS: f64 = 1e9;
 
+/// Inputs of the second computation are moved by this share, to see how errors grow: some eight
+/// thousand roundings of a double-double.
+const NUDGE: f64 = 8.077_935_669_463_161e-28; // 2^-90
+
+/// The same for doubles: eight roundings, as those of steps add up by lot.
+const NUDGE_DOUBLE: f64 = 8.881_784_197_001_252e-16; // 2^-50
+
+/// A step or event may add so many roundings to the error of a run.
+const ROUNDINGS_A_STEP: f64 = 64.0;
+
+/// Second computations that are tried where one ends before the first does.
+const WITNESSES_MAX: u64 = 3;
+
 /// Computes a scene with forces and certifies its digits.
 ///
-/// Two computations by different orders, tolerances and thresholds of contact, in
-/// double-double while their work, bounded, lasts and in doubles after it, are compared
-/// sample by sample. Equation: digits = `-log10((10 difference + rounding)/scale)`, the
-/// difference being the largest so far, so that a chance agreement claims nothing.
+/// Two computations by different orders, steps, tolerances and thresholds of contact, the second
+/// from inputs moved by a hair, in double-double while their work, bounded, lasts and in doubles
+/// after it, are compared sample by sample. Equation: digits = `-log10((10 difference +
+/// rounding)/scale)`, the difference being the largest so far, so that a chance agreement claims
+/// nothing. The moved inputs show how errors grow where both would round alike, as on straight
+/// lines and parabolas.
 ///
 /// What is certified is the answer by the model's rule. Where another order of simultaneous
 /// impacts would have answered otherwise that order is computed too, for the spread. A cluster
@@ -45,19 +61,32 @@ const SETTLING_OPERATIONS: f64 = 1e9;
 pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     let mut published =
         Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?.watched(scene);
-    let again = [Accuracy::WIDE_AGAIN, Accuracy::FAST_AGAIN];
-    let mut witness = Some(Voice::new(scene, again, operations)?);
+    let mut seed = 1;
+    let mut witness = Some(Voice::witness(scene, operations, seed)?);
     let mut recording = Recording::at_start(VOICE, scene);
     let mut states = initial_states(scene);
+    published.begin(Some(&mut recording.events));
+    published.state_into(&mut states);
+    recording.restart(&states);
+    recording.events.end_interval();
     let mut next = states.clone();
     let mut others = states.clone();
-    let mut parting = Parting::default();
-    let mut partings = vec![parting];
+    let mut errors = vec![Parting::default()];
     let mut sample = 1;
     while sample <= scene.sample_count() {
         let events = published.is_wide().then(|| recording.events.clone());
         let halt = published.advance_to(sample, Some(&mut recording.events));
-        let halted = witness.as_mut().map(|it| it.advance_to(sample, None));
+        let mut halted = witness.as_mut().map(|it| it.advance_to(sample, None));
+        while halt.is_none()
+            && published.is_wide()
+            && matches!(halted, Some(Some(Outcome::Collapsed { .. })))
+            && seed < WITNESSES_MAX
+        {
+            seed += 1;
+            let mut other = Voice::witness(scene, operations, seed)?;
+            halted = Some(other.advance_to(sample, None));
+            witness = Some(other);
+        }
         let spent = |halt: Option<Outcome>| matches!(halt, Some(Outcome::BudgetSpent { .. }));
         if let Some(events) = events
             && (spent(halt) || spent(halted.flatten()))
@@ -65,7 +94,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             recording.events = events;
             published.narrow(scene, sample - 1, &states);
             if let Some(witness) = &mut witness {
-                witness.narrow(scene, sample - 1, &moved(&others));
+                witness.narrow(scene, sample - 1, &others);
             }
             continue;
         }
@@ -74,17 +103,20 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             break;
         }
         states.clone_from(&next);
-        parting = match &witness {
+        let mut parting = match &witness {
             Some(witness) if halted.flatten().is_none() => {
                 witness.state_into(&mut others);
-                parting.with_states(&states, &others)
+                Parting::default().with_states(&states, &others)
             }
             Some(_) | None => Parting::unknown(),
         };
-        partings.push(parting);
+        if published.is_rounded_to_an_event() {
+            parting.velocity = f64::INFINITY;
+        }
+        errors.push(parting.scaled(SAFETY * published.growth_of_roundings()));
         if witness.is_some()
             && published.is_unsettled()
-            && (is_lost(parting, &recording) || published.is_costly())
+            && (is_lost(&errors, &recording) || published.is_costly())
         {
             published.narrow(scene, sample, &states);
             published.double.settle_sooner();
@@ -94,13 +126,6 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     }
     recording.work = published.work();
     let scale = Scale::of(&recording);
-    let claims = |partings: &[Parting]| -> Vec<_> {
-        let claim = |parting: &Parting| {
-            let errors = parting.scaled(SAFETY);
-            scale.digits(errors.position, errors.velocity)
-        };
-        partings.iter().map(claim).collect()
-    };
     let mut undetermined = match published.undetermined() {
         Some(from) => Some(recording::Undetermined {
             time: from.time,
@@ -113,14 +138,14 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         && let Some(spread) = from.spread.filter(|it| *it <= SAME * scale.diagonal)
     {
         // One answer, with as many digits as the orders share.
-        for (sample, parting) in partings.iter_mut().enumerate() {
+        for (sample, error) in errors.iter_mut().enumerate() {
             if scene.sample_time(sample) >= from.time {
-                parting.position += spread;
+                error.position += SAFETY * spread;
             }
         }
         undetermined = None;
     }
-    let digits = claims(&partings);
+    let digits = claims(&errors, &scale);
     let certain = |sample: &usize| {
         digits[*sample].position >= COMPARABLE_DIGITS
             && !undetermined
@@ -166,16 +191,6 @@ fn spread(scene: &Scene, recording: &Recording, from: f64, operations: u64) -> R
     Ok(parting.position)
 }
 
-/// States moved by half an ulp, so that two computations do not share their rounding.
-fn moved(states: &[BodyState]) -> Vec<BodyState> {
-    let move_up = |vector: &Vector3| vector.map(|x| x * (1.0 + f64::EPSILON));
-    let moved = |state: &BodyState| BodyState {
-        position: move_up(&state.position),
-        velocity: move_up(&state.velocity),
-    };
-    states.iter().map(moved).collect()
-}
-
 /// One of the two computations: wide at first, in doubles once that work is spent.
 struct Voice {
     wide: Option<ForcesSimulation<Wide>>,
@@ -186,9 +201,48 @@ struct Voice {
     unsettled: bool,
     /// What nearly fell on one instant while it was wide.
     noted: Option<Noted<Wide>>,
+    /// The lot by which its inputs are moved, if they are.
+    moved_by: Option<u64>,
 }
 
 impl Voice {
+    /// A second computation, which differs in all that it can.
+    fn witness(scene: &Scene, operations: u64, seed: u64) -> Result<Self> {
+        let again = [Accuracy::WIDE_AGAIN, Accuracy::FAST_AGAIN];
+        let mut witness = Self::new(scene, again, operations)?;
+        witness.moved_by = Some(seed);
+        if let Some(wide) = &mut witness.wide {
+            wide.move_inputs(NUDGE, seed);
+        }
+        witness.begin(None);
+        Ok(witness)
+    }
+
+    /// Lets what happens at time 0 happen.
+    fn begin(&mut self, log: Option<&mut EventLog>) {
+        match &mut self.wide {
+            Some(wide) => wide.begin(log),
+            None => self.double.begin(log),
+        }
+    }
+
+    /// How many times more its roundings may amount to than the moved inputs show.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    fn growth_of_roundings(&self) -> f64 {
+        match &self.wide {
+            Some(wide) => {
+                let steps = wide.work().steps as f64;
+                (ROUNDINGS_A_STEP * Wide::EPSILON * steps / NUDGE).max(1.0)
+            }
+            None => 1.0,
+        }
+    }
+
+    /// Whether the last sample stands at an event that doubles cannot tell from it.
+    fn is_rounded_to_an_event(&self) -> bool {
+        self.wide.is_none() && self.double.is_near_event()
+    }
+
     fn new(scene: &Scene, [wide, double]: [Accuracy; 2], operations: u64) -> Result<Self> {
         let limit = WIDE_OPERATIONS.min(operations);
         Ok(Self {
@@ -200,6 +254,7 @@ impl Voice {
             undetermined: None,
             unsettled: false,
             noted: None,
+            moved_by: None,
         })
     }
 
@@ -271,6 +326,9 @@ impl Voice {
                 self.noted = Some(watch.up_to(scene.sample_time(sample)));
             }
             self.double.set_state(sample, states);
+            if let Some(seed) = self.moved_by {
+                self.double.move_inputs(NUDGE_DOUBLE, seed);
+            }
         }
     }
 
@@ -280,12 +338,16 @@ impl Voice {
             steps: before.steps + now.steps,
             pair_tests: before.pair_tests + now.pair_tests,
             force_evaluations: before.force_evaluations + now.force_evaluations,
+            solving: before.solving + now.solving,
         }
     }
 }
 
 /// Whether too few digits are left to compare positions.
-fn is_lost(parting: Parting, recording: &Recording) -> bool {
-    let digits = Scale::of(recording).digits(SAFETY * parting.position, 0.0);
+fn is_lost(errors: &[Parting], recording: &Recording) -> bool {
+    let largest = errors
+        .iter()
+        .fold(0.0, |most: f64, own| most.max(own.position));
+    let digits = Scale::of(recording).digits(largest, 0.0);
     digits.position < COMPARABLE_DIGITS
 }

@@ -34,6 +34,16 @@ impl<T: Real> Link<T> {
         self.scale * inverse
     }
 
+    /// The length below which the force no longer changes its kind: the softening of an
+    /// attraction, 0 without.
+    pub(super) fn softening(&self) -> f64 {
+        if self.power < -1.0 {
+            self.softening_squared.to_f64().sqrt()
+        } else {
+            0.0
+        }
+    }
+
     /// The force on body a.
     fn force(&self, position: &[Triple<T>], velocity: &[Triple<T>]) -> Triple<T> {
         let [a, b] = self.ends;

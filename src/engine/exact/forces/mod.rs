@@ -21,6 +21,8 @@ mod certify;
 mod held;
 mod impacts;
 mod law;
+mod noise;
+mod nudge;
 mod perturb;
 mod refuse;
 mod scalar;

@@ -2,7 +2,7 @@
 
 use super::impacts::closed_below;
 use super::touch::{Surfaces, Touch};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, code};
 use crate::scene::Scene;
 
 /// Overlaps up to this share of the largest coordinate or radius are rounding of a scene file.
@@ -44,15 +44,15 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     for touch in surfaces.all() {
         let depth = -surfaces.gap(touch, &position);
         if depth > rounding {
-            let name = |body: usize| &scene.bodies[body].name;
+            let name = |body: usize| code(&scene.bodies[body].name);
             let what = match touch {
                 Touch::Pair { a, b } => format!(
-                    "spheres that overlap at the start: `{}` and `{}`, {depth:e} deep",
+                    "spheres that overlap at the start: {} and {}, {depth:e} deep",
                     name(a),
                     name(b)
                 ),
                 Touch::Wall { body, wall } => format!(
-                    "a sphere in a wall at the start: `{}` in {wall}, {depth:e} deep",
+                    "a sphere in a wall at the start: {} in {wall}, {depth:e} deep",
                     name(body)
                 ),
             };

@@ -1,6 +1,8 @@
 //! The first event within a step, on the step's own polynomials.
 
 use super::bernstein::{Fall, first_fall, polish};
+use super::law::Law;
+use super::noise::{Noise, Sign};
 use super::scalar::{Real, Triple, dot, minus, size};
 use super::series::Series;
 use super::touch::{Surfaces, Touch};
@@ -9,13 +11,22 @@ use super::touch::{Surfaces, Touch};
 /// each of up to fifty terms and halvings.
 const NOISE: f64 = 200.0 * f64::ROUNDING;
 
+/// A pair farther apart than so many sums of its radii is followed to where it has come so many
+/// times nearer, and its impact found from there: the squared distance loses twice the digits of
+/// the distance over the radii, at most twelve bits at a time.
+const NEARER: f64 = 64.0;
+
 /// What ends a step early.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cause {
     /// Two surfaces meet with strict approach.
     Approach,
+    /// A closed gap would close further, by a derivative above the first: the contact presses.
+    Press,
     /// The force of a held contact falls through zero.
     Release,
+    /// Small bodies that were far apart have come nearer: no event of the model.
+    Nearer,
 }
 
 /// The first event within a step.
@@ -28,7 +39,7 @@ pub(super) struct Upcoming<T> {
 }
 
 /// A gap that is closed at the step's start though nothing presses: its first coefficients are
-/// zero up to rounding and are left out, so that the root at the start is not met again.
+/// zero up to rounding and are left out.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fresh {
     pub(super) touch: Touch,
@@ -41,16 +52,17 @@ pub(super) struct Fresh {
 /// `fresh` gaps are closed and open from here on, `idle` ones are kept closed by held contacts.
 pub(super) fn first_event<T: Real>(
     series: &Series<T>,
-    surfaces: &Surfaces<T>,
+    (law, surfaces): (&Law<T>, &Surfaces<T>),
     span: f64,
     (fresh, idle): (&[Fresh], &[Touch]),
     looked_at: &mut u64,
 ) -> Option<Upcoming<T>> {
     let powers = powers::<T>(span, series.order());
     let travel = travel(series, &powers);
+    let noise = Noise::over(series, law, &powers);
     let mut first: Option<Upcoming<T>> = None;
-    let mut offer = |at: Option<T>, touch: Touch, cause: Cause| {
-        if let Some(at) = at
+    let mut offer = |event: Option<(T, Cause)>, touch: Touch| {
+        if let Some((at, cause)) = event
             && first.is_none_or(|first| at < first.at)
         {
             first = Some(Upcoming { at, touch, cause });
@@ -64,32 +76,46 @@ pub(super) fn first_event<T: Real>(
         {
             continue;
         }
-        let mut gap = gap_series(series, surfaces, touch);
+        let reach = watched_reach(series, surfaces, touch);
+        let gap = gap_series(series, surfaces, touch, reach);
         let own = fresh.iter().find(|fresh| fresh.touch == touch);
-        let mut skip = own.map_or(0, |own| own.skip);
-        if skip == 0 && gap[0] <= T::zero() {
-            skip = 1;
-        }
-        // Still closing although closed: at once. A contact let go by the complementarity
-        // problem (skip 2 and 3) opens, up to rounding.
-        if skip == 1 && gap[1] < T::zero() {
-            offer(Some(T::zero()), touch, Cause::Approach);
-            continue;
-        }
-        gap.drain(..skip);
-        offer(fall_within(&gap, span, &powers), touch, Cause::Approach);
+        let fall = |gap: &[T], cause: Cause| {
+            let at = fall_within(gap, span, &powers);
+            at.map(|at| (at, cause))
+        };
+        let event = if own.is_none() && gap[0] > T::zero() {
+            let is_near = reach <= surfaces.reach(touch);
+            fall(
+                &gap,
+                if is_near {
+                    Cause::Approach
+                } else {
+                    Cause::Nearer
+                },
+            )
+        } else {
+            // The first coefficients are 0 up to rounding, so that the root at the start is not
+            // met again.
+            let skip = own.map_or(1, |own| own.skip);
+            match noise.of_gap(&gap, touch, surfaces, skip) {
+                Sign::Positive(from) => fall(&gap[from..], Cause::Approach),
+                Sign::Negative(1) => Some((T::zero(), Cause::Approach)),
+                Sign::Negative(_) => Some((T::zero(), Cause::Press)),
+                Sign::None => None,
+            }
+        };
+        offer(event, touch);
     }
     for held in &series.held {
-        let at = if held.force[0] <= T::zero() {
-            Some(T::zero())
-        } else {
-            fall_within(&held.force, span, &powers)
+        let at = match noise.of_force(held) {
+            Sign::Positive(from) => fall_within(&held.force[from..], span, &powers),
+            Sign::Negative(_) => Some(T::zero()),
+            Sign::None => None,
         };
-        offer(at, held.touch, Cause::Release);
+        offer(at.map(|at| (at, Cause::Release)), held.touch);
     }
     first
 }
-
 /// Powers in the full arithmetic: a target that is small and far leaves no digit to lose.
 fn powers<T: Real>(span: f64, order: usize) -> Vec<T> {
     let next = |power: &T| Some(power.times(span));
@@ -131,8 +157,27 @@ fn out_of_reach<T: Real>(
     }
 }
 
-/// The gap's polynomial in u; of a pair, of `d . d - (r_a + r_b)²`.
-fn gap_series<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch) -> Vec<T> {
+/// The distance at which a pair is watched for: the sum of the radii, or more if that is small
+/// and far.
+fn watched_reach<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch) -> f64 {
+    let reach = surfaces.reach(touch);
+    match touch {
+        Touch::Pair { a, b } => {
+            let position = &series.position[0];
+            let distance = size(&minus(&position[b], &position[a]));
+            reach.max(distance / NEARER)
+        }
+        Touch::Wall { .. } => reach,
+    }
+}
+
+/// The gap's polynomial in u; of a pair, of `d . d - reach²`.
+fn gap_series<T: Real>(
+    series: &Series<T>,
+    surfaces: &Surfaces<T>,
+    touch: Touch,
+    reach: f64,
+) -> Vec<T> {
     match touch {
         Touch::Pair { a, b } => {
             let d: Vec<Triple<T>> = series
@@ -141,7 +186,11 @@ fn gap_series<T: Real>(series: &Series<T>, surfaces: &Surfaces<T>, touch: Touch)
                 .map(|x| minus(&x[b], &x[a]))
                 .collect();
             let mut gap = square(&d);
-            let reach = T::from_f64(surfaces.radii[a]) + T::from_f64(surfaces.radii[b]);
+            let reach = if reach > surfaces.reach(touch) {
+                T::from_f64(reach)
+            } else {
+                T::from_f64(surfaces.radii[a]) + T::from_f64(surfaces.radii[b])
+            };
             gap[0] -= reach * reach;
             gap
         }

@@ -99,7 +99,7 @@ pub(super) struct Held<T> {
     pub(super) touch: Touch,
     /// Force over the length of the direction it acts along; non-negative while it presses.
     pub(super) force: Vec<T>,
-    arms: Arms<T>,
+    pub(super) arms: Arms<T>,
 }
 
 /// The series of all bodies.
@@ -232,6 +232,11 @@ impl<T: Real> Series<T> {
             }
         }
         sum
+    }
+
+    /// The series of each link's power of the distance, in the order of the law's links.
+    pub(super) fn powers(&self) -> impl Iterator<Item = &[T]> {
+        self.links.iter().map(|link| link.power.as_slice())
     }
 
     /// The order: the highest power of the positions.

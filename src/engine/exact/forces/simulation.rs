@@ -3,12 +3,13 @@
 use super::accuracy::{Accuracy, UNDETERMINED_BOUNCE_HEIGHT};
 use super::impacts::{Aftermath, Instant, closed_below};
 use super::law::Law;
+use super::nudge::nudge;
 use super::refuse::check;
 use super::scalar::{Real, Triple, size};
 use super::search::{Cause, Fresh, Upcoming, first_event};
 use super::series::{Series, as_real};
 use super::span::span;
-use super::touch::{Surfaces, Touch};
+use super::touch::{Surfaces, Touch, arms};
 use super::watchdog::Watchdog;
 use crate::engine::Simulation;
 use crate::engine::exact::effort::Effort;
@@ -19,9 +20,6 @@ use crate::physics::BodyState;
 use crate::physics::cholesky::Cholesky;
 use crate::recording::{CollapseReason, Event, EventLog, Outcome, Work, initial_states};
 use crate::scene::Scene;
-
-/// Order that is tried after an event, before the full one.
-const SHORT_ORDER: usize = 8;
 
 /// Steps between these multiples of the scale of time keep every coefficient a number.
 const SCALES: std::ops::Range<f64> = 1e-6..1e6;
@@ -62,6 +60,8 @@ pub struct ForcesSimulation<T: Real> {
     watchdog: Watchdog,
     outcome: Option<Outcome>,
     undetermined: Option<Undetermined>,
+    /// Time from the last sample to the nearest event, over what is known of an event's time.
+    nearest_event: f64,
     is_unsettled: bool,
     is_patient: bool,
     work: Work,
@@ -107,6 +107,21 @@ struct Step<T> {
     event: Option<(Touch, Cause)>,
 }
 
+impl<T: Real> Step<T> {
+    /// A step that ends where that happens.
+    fn until(series: Series<T>, Upcoming { at, touch, cause }: Upcoming<T>) -> Self {
+        let event = match cause {
+            Cause::Approach | Cause::Press | Cause::Release => Some((touch, cause)),
+            Cause::Nearer => None,
+        };
+        Self {
+            series,
+            end: at,
+            event,
+        }
+    }
+}
+
 impl<T: Real> ForcesSimulation<T> {
     /// Puts a scene at its start.
     ///
@@ -139,6 +154,7 @@ impl<T: Real> ForcesSimulation<T> {
             watchdog: Watchdog::new(scene.duration),
             outcome: None,
             undetermined: None,
+            nearest_event: f64::INFINITY,
             is_unsettled: false,
             is_patient: false,
             work: Work::default(),
@@ -277,6 +293,7 @@ impl<T: Real> ForcesSimulation<T> {
             law: &self.law,
             surfaces: &self.surfaces,
             bounce_height: self.bounce_height(),
+            sample_every: self.sample_every,
             order: together.map_or(self.order, |it| it.order),
             position: &position,
             held: &self.held,
@@ -351,19 +368,18 @@ impl<T: Real> ForcesSimulation<T> {
         for attempt in 0..TRIES_MAX {
             let mut series = self.series();
             if attempt == 0 && self.after_event {
-                self.extend(&mut series, &factor, SHORT_ORDER.min(order));
-                if let Some(Upcoming { at, touch, cause }) = self.soon(&series) {
-                    let event = Some((touch, cause));
-                    let end = at;
+                self.extend(&mut series, &factor, self.accuracy.short_order);
+                if let Some(upcoming) = self.soon(&series) {
                     self.work.steps += 1;
-                    self.step = Some(Step { series, end, event });
+                    self.step = Some(Step::until(series, upcoming));
                     return;
                 }
             }
             self.extend(&mut series, &factor, order);
-            let end = span(&series, &self.law, self.accuracy.tolerance);
-            if !series.is_finite() || end.is_nan() {
-                // Too long a scale overflows; too short a one never does.
+            let end = self.span(&series);
+            if !series.is_finite() || end.is_nan() || end == 0.0 {
+                // Too long a scale overflows, in the coefficients or in their squares, which
+                // leaves no step; too short a one never does.
                 self.tau *= 2.0_f64.powi(-40);
             } else if end.is_finite() && end > 0.0 && !SCALES.contains(&end) {
                 self.tau = power_of_two(self.tau * end);
@@ -380,11 +396,16 @@ impl<T: Real> ForcesSimulation<T> {
     /// The next event if it comes within what a series of few orders reaches, as bounces do that
     /// follow each other closely.
     fn soon(&mut self, series: &Series<T>) -> Option<Upcoming<T>> {
-        let end = span(series, &self.law, self.accuracy.tolerance);
+        let end = self.span(series);
         if !series.is_finite() || !end.is_finite() {
             return None;
         }
         self.look(series, end)
+    }
+
+    /// How far a series may be followed.
+    fn span(&self, series: &Series<T>) -> f64 {
+        self.accuracy.step * span(series, &self.law, self.accuracy.tolerance)
     }
 
     /// The first event within so much of a series.
@@ -392,7 +413,8 @@ impl<T: Real> ForcesSimulation<T> {
     fn look(&mut self, series: &Series<T>, end: f64) -> Option<Upcoming<T>> {
         let mut looked_at = 0;
         let closed = (&*self.fresh, &*self.idle);
-        let event = first_event(series, &self.surfaces, end, closed, &mut looked_at);
+        let rules = (&self.law, &self.surfaces);
+        let event = first_event(series, rules, end, closed, &mut looked_at);
         self.work.pair_tests += looked_at;
         self.effort.add::<f64>(OPERATIONS_A_LOOK * looked_at as f64);
         event
@@ -429,12 +451,14 @@ impl<T: Real> ForcesSimulation<T> {
         }
         self.tau = power_of_two(end * series.tau);
         self.work.steps += 1;
-        let event = self.look(&series, end);
-        let (end, event) = match event {
-            Some(Upcoming { at, touch, cause }) => (at, Some((touch, cause))),
-            None => (T::from_f64(end), None),
-        };
-        self.step = Some(Step { series, end, event });
+        self.step = Some(match self.look(&series, end) {
+            Some(upcoming) => Step::until(series, upcoming),
+            None => Step {
+                series,
+                end: T::from_f64(end),
+                event: None,
+            },
+        });
     }
 
     /// The pair of linked bodies with the least distance.
@@ -472,10 +496,10 @@ impl<T: Real> ForcesSimulation<T> {
         }
         self.after_event = step.event.is_some();
         let progress = (self.time.sum - before).to_f64();
-        if let Some(event) = step.event {
-            self.resolve(Some(event), log);
-        } else {
-            self.forget_open();
+        match step.event {
+            Some((touch, Cause::Press)) => self.hold(touch),
+            Some(event) => self.resolve(Some(event), log),
+            None => self.forget_open(),
         }
         let bodies = step
             .event
@@ -485,14 +509,23 @@ impl<T: Real> ForcesSimulation<T> {
         }
     }
 
-    /// A gap that has opened needs no care any more.
+    /// Keeps a contact closed that begins to press without an impact; if it does not press after
+    /// all, the series of its force lets it go.
+    fn hold(&mut self, touch: Touch) {
+        self.fresh.retain(|fresh| fresh.touch != touch);
+        self.held.push(touch);
+    }
+
+    /// A gap that has opened needs no care any more; of one that has opened by less than rounding
+    /// nothing but that it is closed is known.
     fn forget_open(&mut self) {
         if self.fresh.is_empty() {
             return;
         }
         let position = self.positions();
         let surfaces = &self.surfaces;
-        self.fresh.retain(|fresh| {
+        self.fresh.retain_mut(|fresh| {
+            fresh.skip = 1;
             let far = fresh.touch.bodies().map(|body| size(&position[body]));
             let gap = surfaces.gap(fresh.touch, &position).to_f64();
             gap <= closed_below::<T>(far[0].max(far[1]) + surfaces.reach(fresh.touch))
@@ -522,6 +555,48 @@ impl<T: Real> ForcesSimulation<T> {
             .collect();
     }
 
+    /// What is known of the time of an event there: its rounding, and the truncation of the steps
+    /// up to it, about a hundred of them long. An event so near to a sample belongs to it.
+    fn instant(&self, time: f64) -> f64 {
+        (16.0 * T::ROUNDING + 100.0 * self.accuracy.tolerance) * time.abs()
+    }
+
+    /// Whether an event stands so near to the last sample that rounding decides which of the two
+    /// comes first.
+    pub(super) fn is_near_event(&self) -> bool {
+        self.nearest_event <= 1.0
+    }
+
+    /// Lets what happens at time 0 happen, so that the state there shows it.
+    pub(super) fn begin(&mut self, log: Option<&mut EventLog>) {
+        if self.step.is_none() && self.outcome.is_none() {
+            self.resolve(None, log);
+            self.show(None);
+        }
+    }
+
+    /// Moves every coordinate and component of a velocity by that share of the
+    /// largest, by lot; contacts that are closed and neither open nor close stay so.
+    pub(super) fn move_inputs(&mut self, share: f64, seed: u64) {
+        let (mut position, mut velocity) = (self.positions(), self.velocities());
+        let fastest = velocity.iter().map(size).fold(0.0, f64::max);
+        let together = self.surfaces.all().filter(|touch| {
+            let far = touch.bodies().map(|body| size(&position[body]));
+            let far = far[0].max(far[1]) + self.surfaces.reach(*touch);
+            let gap = self.surfaces.gap(*touch, &position).to_f64();
+            let rate = arms(*touch, &position).rate(&velocity).to_f64();
+            let still = 64.0 * T::ROUNDING * fastest * self.surfaces.reach(*touch);
+            gap.abs() <= closed_below::<T>(far) && rate.abs() <= still
+        });
+        self.held = together.collect();
+        nudge(&mut position, &mut velocity, share, seed);
+        self.set_positions(&position);
+        self.set_velocities(&velocity);
+        self.close_held();
+        self.held.clear();
+        self.idle.clear();
+    }
+
     /// Steps on until the step that holds that time, all events up to it behind it.
     fn reach(&mut self, target: f64, mut log: Option<&mut EventLog>) {
         if self.step.is_none() && self.outcome.is_none() {
@@ -540,8 +615,7 @@ impl<T: Real> ForcesSimulation<T> {
             };
             let left = T::from_f64(target) - self.time.sum - self.time.carry;
             let beyond = (step.end.times(step.series.tau) - left).to_f64();
-            // An event at the sample's instant, up to the rounding of its time, belongs to it.
-            let at_once = 16.0 * T::ROUNDING * target.abs();
+            let at_once = self.instant(target);
             let passes = if step.event.is_some() {
                 beyond <= at_once
             } else {
@@ -550,6 +624,18 @@ impl<T: Real> ForcesSimulation<T> {
             if passes {
                 self.cross(&step, log.as_deref_mut());
             } else {
+                let since = (left + self.time.carry).to_f64().abs();
+                let ago = if self.after_event {
+                    since
+                } else {
+                    f64::INFINITY
+                };
+                let ahead = if step.event.is_some() {
+                    beyond
+                } else {
+                    f64::INFINITY
+                };
+                self.nearest_event = ago.min(ahead / 16.0) / at_once;
                 self.show(Some((&step, left.times(1.0 / step.series.tau))));
                 self.step = Some(step);
                 return;

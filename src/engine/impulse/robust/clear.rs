@@ -4,6 +4,11 @@ use super::Robust;
 use crate::engine::impulse::Particle;
 use crate::engine::impulse::phases::Phases;
 
+/// Operations to see how long a pair cannot meet …
+const OPERATIONS_A_PAIR: u64 = 15;
+/// … and a body no wall.
+const OPERATIONS_A_BODY: u64 = 20;
+
 impl Robust {
     /// Whether nothing can meet or stop for longer than a step, where speeds never grow.
     ///
@@ -20,7 +25,9 @@ impl Robust {
             return false;
         }
         let mut clear = f64::INFINITY;
+        self.work.count_bodies(OPERATIONS_A_BODY);
         if phases.contact.is_some() {
+            self.work.count_pairs(OPERATIONS_A_PAIR);
             for (place, a) in particles.iter().enumerate() {
                 for b in &particles[place + 1..] {
                     let gap = (a.position - b.position).norm() - (a.radius + b.radius);

@@ -137,6 +137,15 @@ impl Flow {
         }
     }
 
+    /// Operations of a motion beside those of bodies on their own.
+    pub(super) fn operations(&self) -> u64 {
+        let square = |cluster: &Cluster| (cluster.bodies.len() as u64).pow(2);
+        self.clusters
+            .iter()
+            .map(|cluster| 12 * square(cluster) + 200)
+            .sum()
+    }
+
     /// c = k/m of drag. Shape: `[body]`.
     pub(super) fn rates(&self) -> &[f64] {
         &self.rates

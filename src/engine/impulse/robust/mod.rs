@@ -40,6 +40,12 @@ use together::Instant;
 use touch::{Touch, touching};
 use work::Work;
 
+/// Operations to move a body freely.
+const OPERATIONS_A_MOTION: u64 = 10;
+/// Operations for a body between two events, beside its motions and searches.
+const OPERATIONS_AN_EVENT: u64 = 40;
+/// Operations to see how fast a pair passes.
+const OPERATIONS_A_LIMIT: u64 = 30;
 /// Share of a step below which two instants are one.
 const INSTANT: f64 = 1e-13;
 
@@ -93,7 +99,12 @@ impl Scheme for Robust {
             wall_push: Vector3::zeros(),
             clear: 0.0,
             jammed: false,
-            work: Work::of(particles.len(), steps, !limits.are_absent),
+            work: Work::of(
+                particles.len(),
+                steps,
+                phases.forces_a_pass(particles.len() as u64),
+                !limits.are_absent,
+            ),
             conceded: Conceded::default(),
         }
     }
@@ -106,11 +117,16 @@ impl Scheme for Robust {
         dt: f64,
         observer: &mut impl Observer,
     ) -> Taken {
+        self.work.begin();
         if self.clear >= dt || self.becomes_clear(phases, particles, dt) {
             self.clear -= dt;
             return self.coast(phases, particles, dt, observer);
         }
         self.walk(phases, particles, dt, observer)
+    }
+
+    fn limit(&mut self, budget: u64) {
+        self.work.limit(budget);
     }
 
     fn forget(&mut self) {
@@ -152,7 +168,8 @@ impl Robust {
         let before = books::kept::<O>(particles);
         self.flow.coast(particles, dt);
         books::motion(phases, &before, particles, dt, observer);
-        Taken::default()
+        self.work.count_bodies(OPERATIONS_A_MOTION);
+        self.work.taken()
     }
 
     /// A step from event to event.
@@ -166,10 +183,11 @@ impl Robust {
         self.work.begin_step();
         let mut left = dt;
         self.make_room(phases, particles, observer);
-        while left > 0.0 {
+        while left > 0.0 && !self.work.is_spent() {
+            self.work.count_bodies(OPERATIONS_AN_EVENT);
             let wanted = self.wanted(phases, particles, dt);
             let mut length = if wanted < left { wanted } else { left };
-            touching(phases, particles, &mut self.neighbours, &mut self.touches);
+            self.find_touching(phases, particles);
             self.end_low_bounces(particles, dt, observer);
             self.start.clear();
             self.start.extend_from_slice(particles);
@@ -195,7 +213,13 @@ impl Robust {
             self.work.charge_event(went, left);
             self.meet(phases, particles, dt, next, left, observer);
         }
-        self.work.taken
+        self.work.taken()
+    }
+
+    /// Finds what touches, wherever it goes.
+    fn find_touching(&mut self, phases: &Phases, particles: &[Particle]) {
+        let (neighbours, touches) = (&mut self.neighbours, &mut self.touches);
+        touching(phases, particles, neighbours, touches, &mut self.work.meter);
     }
 
     /// Takes the pushes out of the forces: what is left says how hard bodies are pulled together.
@@ -227,13 +251,19 @@ impl Robust {
     }
 
     /// Ends bounces that would not rise above what counts as touching.
-    fn end_low_bounces(&self, particles: &mut [Particle], dt: f64, observer: &mut impl Observer) {
+    fn end_low_bounces(
+        &mut self,
+        particles: &mut [Particle],
+        dt: f64,
+        observer: &mut impl Observer,
+    ) {
         let rate = |touch: &Touch| touch.rate(particles).abs();
         let is_low = |touch: &&Touch| rate(touch) <= touch.slowest_bounce(particles);
         let low = || self.touches.iter().filter(is_low);
         if low().any(|touch| rate(touch) > touch.still(particles, dt)) {
             let low: Vec<Touch> = low().copied().collect();
-            stick::bring_to_rest(particles, &low, |account, entry| {
+            let meter = &mut self.work.meter;
+            stick::bring_to_rest(particles, &low, meter, |account, entry| {
                 observer.book(account, entry);
             });
         }
@@ -245,6 +275,9 @@ impl Robust {
             return f64::INFINITY;
         }
         let wanted = self.limits.length(phases, particles);
+        if phases.attraction.is_some() {
+            self.work.count_pairs(OPERATIONS_A_LIMIT);
+        }
         let shortest = self.shortest(dt);
         if wanted >= shortest {
             return wanted;
@@ -274,14 +307,14 @@ impl Robust {
         if self.jammed || (phases.contact.is_none() && phases.cushions.is_none()) {
             return;
         }
-        touching(phases, particles, &mut self.neighbours, &mut self.touches);
+        self.find_touching(phases, particles);
         if self
             .touches
             .iter()
             .any(|touch| touch.gap < -4.0 * touch.near)
         {
             books::pushing_out(phases, particles, observer, |particles, _| {
-                self.jammed = !overlap::separate(phases, particles);
+                self.jammed = !overlap::separate(phases, particles, &mut self.work.meter);
             });
             self.conceded.jammed += u64::from(self.jammed);
         }
@@ -298,7 +331,7 @@ impl Robust {
         left: f64,
         observer: &mut impl Observer,
     ) {
-        touching(phases, particles, &mut self.neighbours, &mut self.touches);
+        self.find_touching(phases, particles);
         if self.touches.iter().all(|touch| touch.kind != next.kind) {
             self.touches.extend(Touch::of(next.kind, phases, particles));
         }
@@ -311,14 +344,16 @@ impl Robust {
                 touch.restitution = 0.0;
             }
         }
+        let before = self.work.meter.done();
         let mut instant = Instant {
             particles,
             touches: &self.touches,
             rest: phases.rest,
             dt,
+            meter: &mut self.work.meter,
         };
         let settled = instant.settle(&mut |note| note.tell(left, observer));
-        self.work.charge_rounds(settled.rounds);
+        self.work.charge_rounds(settled.rounds, before);
         self.conceded.cut_short += u64::from(settled.cut_short);
     }
 

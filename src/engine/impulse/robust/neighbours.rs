@@ -1,7 +1,13 @@
 //! Which pairs are near enough to meet: the others need not be looked at.
 
 use super::super::Particle;
-use crate::physics::Vector3;
+use crate::engine::impulse::handling::pairs;
+use crate::physics::{Meter, Vector3};
+
+/// Operations to see how far a body moved …
+const OPERATIONS_A_BODY: u64 = 5;
+/// … and whether a pair is near.
+const OPERATIONS_A_PAIR: u64 = 4;
 
 /// Pairs near each other, with room for motion: kept as long as nobody left that room.
 ///
@@ -18,9 +24,17 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Every pair with surfaces nearer than `gap`, in lexical order; and some more.
-    pub(super) fn within(&mut self, particles: &[Particle], gap: f64) -> &[[usize; 2]] {
+    pub(super) fn within(
+        &mut self,
+        particles: &[Particle],
+        gap: f64,
+        meter: &mut Meter,
+    ) -> &[[usize; 2]] {
+        let bodies = particles.len() as u64;
+        meter.add(OPERATIONS_A_BODY * bodies);
         let reach = 2.0 * self.moved(particles) + gap;
         if reach.is_nan() || reach > self.margin {
+            meter.add(OPERATIONS_A_PAIR * pairs(bodies));
             self.find(particles, (2.0 * gap).max(0.5 * self.margin));
         }
         &self.pairs
@@ -80,16 +94,32 @@ mod tests {
     #[test]
     fn no_pair_within_the_gap_is_missed() {
         let mut neighbours = Neighbours::default();
-        assert_eq!(neighbours.within(&at(&[0.0, 2.0, 9.0]), 1.5), [[0, 1]]);
-        assert_eq!(neighbours.within(&at(&[0.0, 2.0, 8.5]), 1.5), [[0, 1]]);
+        let mut meter = Meter::default();
         assert_eq!(
-            neighbours.within(&at(&[0.0, 2.0, 4.4]), 1.5),
+            neighbours.within(&at(&[0.0, 2.0, 9.0]), 1.5, &mut meter),
+            [[0, 1]]
+        );
+        assert_eq!(
+            neighbours.within(&at(&[0.0, 2.0, 8.5]), 1.5, &mut meter),
+            [[0, 1]]
+        );
+        assert_eq!(
+            neighbours.within(&at(&[0.0, 2.0, 4.4]), 1.5, &mut meter),
             [[0, 1], [1, 2]]
         );
         let grown = at(&[0.0, 2.0, 4.4, 6.0]);
-        assert!(neighbours.within(&grown, 1.5).contains(&[2, 3]));
-        assert_eq!(neighbours.within(&at(&[0.0, f64::NAN]), 1.5), [[0, 1]]);
-        assert_eq!(neighbours.within(&at(&[0.0, 9.0]), 1.5).len(), 0);
-        assert_eq!(neighbours.within(&at(&[0.0, f64::NAN]), 1.5), [[0, 1]]);
+        assert!(neighbours.within(&grown, 1.5, &mut meter).contains(&[2, 3]));
+        assert_eq!(
+            neighbours.within(&at(&[0.0, f64::NAN]), 1.5, &mut meter),
+            [[0, 1]]
+        );
+        assert_eq!(
+            neighbours.within(&at(&[0.0, 9.0]), 1.5, &mut meter).len(),
+            0
+        );
+        assert_eq!(
+            neighbours.within(&at(&[0.0, f64::NAN]), 1.5, &mut meter),
+            [[0, 1]]
+        );
     }
 }

@@ -3,7 +3,7 @@
 use super::super::Particle;
 use super::super::contacts::line_of_action;
 use super::super::phases::Phases;
-use crate::physics::Vector3;
+use crate::physics::{Meter, Vector3};
 use crate::scene::overlap::{Overlap, overlaps};
 
 /// Rounds of pushing, after which what still overlaps is left so: a box too small for its balls …
@@ -19,6 +19,14 @@ const RELAXATION: f64 = 1.5;
 /// layers, not in their square.
 const MOMENTUM: f64 = 0.9;
 
+/// Operations of a round for a body, …
+const OPERATIONS_A_BODY: u64 = 60;
+/// … for a pair that a sweep looks at, of so many a body, …
+const OPERATIONS_A_PAIR: u64 = 2;
+const SWEPT: u64 = 30;
+/// … and for an overlap.
+const OPERATIONS_AN_OVERLAP: u64 = 60;
+
 /// Moves overlapping spheres apart and back into the box, velocities untouched; whether nothing
 /// overlaps any more.
 ///
@@ -29,10 +37,17 @@ const MOMENTUM: f64 = 0.9;
 /// Source: the projection of position-based dynamics, Jacobi form: Macklin et al. 2014, "Unified
 /// particle physics for real-time applications", section 4; momentum: Polyak 1964, "Some methods
 /// of speeding up the convergence of iteration methods".
-pub(super) fn separate(phases: &Phases, particles: &mut [Particle]) -> bool {
+pub(super) fn separate(phases: &Phases, particles: &mut [Particle], meter: &mut Meter) -> bool {
     let mut moves = vec![Vector3::zeros(); particles.len()];
     for _ in 0..ROUNDS_MAX + ROUNDS_A_BALL * particles.len() {
         let found = overlapping(phases, particles);
+        let bodies = particles.len() as u64;
+        // A sweep looks at no more than all pairs.
+        let looks = OPERATIONS_A_PAIR * bodies * bodies.min(SWEPT) + OPERATIONS_A_BODY * bodies;
+        meter.add(looks + OPERATIONS_AN_OVERLAP * found.len() as u64);
+        if meter.is_spent() {
+            return false;
+        }
         for own in &mut moves {
             *own *= MOMENTUM;
         }
@@ -141,7 +156,7 @@ mod tests {
         });
         let effects = format!("[effects.contact]\nrestitution=1\n{walls}");
         let (phases, mut particles, _) = start(spheres, &effects);
-        let apart = separate(&phases, &mut particles);
+        let apart = separate(&phases, &mut particles, &mut Meter::default());
         (particles, apart)
     }
 

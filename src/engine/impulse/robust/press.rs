@@ -1,7 +1,7 @@
 //! Motion over a step, with the pushes of surfaces that stay in touch.
 
 use super::flow::Flow;
-use super::together::{coupling, square};
+use super::together::{OPERATIONS_AN_ENTRY, coupling, square};
 use super::touch::Touch;
 use super::{Robust, mean_force};
 use crate::engine::impulse::Particle;
@@ -15,6 +15,12 @@ const ROUNDS_MAX: u32 = 40;
 const PUSH_ROUNDS: u32 = 6;
 /// Halvings of a step, before it is given up.
 const HALVINGS: u32 = 10;
+/// Operations to move a body in a round, beside the forces.
+const OPERATIONS_A_ROUND: u64 = 40;
+/// Operations to see how a touch ends.
+const OPERATIONS_A_TOUCH: u64 = 100;
+/// Operations for an entry of the matrix of touches where dampers tie bodies, a body.
+const OPERATIONS_A_COUPLED_ENTRY: u64 = 8;
 /// Surfaces that press and slide may turn by this angle in a step.
 const TURN: f64 = 0.05;
 
@@ -47,7 +53,7 @@ impl Robust {
         let mut halvings = 0;
         self.release();
         let resting = self.resting(particles, dt);
-        loop {
+        while !self.work.is_spent() {
             length = self.travel(phases, particles, length, floor);
             if resting.is_empty() {
                 return length;
@@ -71,6 +77,7 @@ impl Robust {
             self.release();
             particles.clone_from_slice(&self.start);
         }
+        length
     }
 
     /// The time in which surfaces that press and slide turn by as much as they may.
@@ -117,6 +124,8 @@ impl Robust {
     ) -> Pressed {
         let mut sizes = vec![0.0; resting.len()];
         for round in 0..=PUSH_ROUNDS {
+            let count = resting.len() as u64;
+            self.work.meter.add(OPERATIONS_A_TOUCH * count);
             let ends: Vec<Touch> = resting
                 .iter()
                 .map(|touch| touch.mean(phases, &self.start, particles))
@@ -137,7 +146,7 @@ impl Robust {
                     Pressed::Nowhere
                 };
             }
-            if round == PUSH_ROUNDS {
+            if round == PUSH_ROUNDS || self.work.is_spent() {
                 // Gaps that are off by less than what counts as touching stay closed all the same.
                 let opens = |((touch, change), size): ((&Touch, &f64), &f64)| {
                     *change < -touch.near || (*size > 0.0 && *change > touch.near)
@@ -147,6 +156,7 @@ impl Robust {
                 }
                 break;
             }
+            self.count_matrix(count);
             let (flow, start) = (&self.flow, &self.start);
             let matrix = square(&ends, |one, other| pressing(one, other, flow, start));
             let rows = matrix.chunks_exact(ends.len());
@@ -157,7 +167,9 @@ impl Robust {
                 .collect();
             let guess: Vec<bool> = sizes.iter().map(|l| round == 0 || *l > 0.0).collect();
             let entry = |i: usize, j: usize| matrix[i * ends.len() + j];
-            sizes = pushes(&entry, &free, &guess);
+            let before = self.work.meter.done();
+            sizes = pushes(&entry, &free, &guess, &mut self.work.meter);
+            self.work.charge_solution(before);
             self.release();
             for (touch, size) in ends.iter().zip(&sizes) {
                 if touch.b.is_none() {
@@ -209,12 +221,31 @@ impl Robust {
         turn_back(phases, particles, length);
     }
 
+    /// Counts a matrix of so many touches.
+    fn count_matrix(&mut self, count: u64) {
+        let an_entry = if self.flow.is_coupled() {
+            OPERATIONS_A_COUPLED_ENTRY * self.start.len() as u64
+        } else {
+            OPERATIONS_AN_ENTRY
+        };
+        self.work.meter.add(an_entry * count * count);
+    }
+
+    /// Counts a motion of all bodies.
+    fn charge_motion(&mut self) {
+        self.work.charge_motion();
+        self.work.count_bodies(OPERATIONS_A_ROUND);
+        self.work.meter.add(self.flow.operations());
+    }
+
     /// One attempt; whether the forces found the end of the step.
     fn try_travel(&mut self, phases: &Phases, particles: &mut [Particle], h: f64) -> bool {
         mean_force::set(phases, &self.start, particles, &self.pushes);
         self.flow.advance(particles, h);
-        self.work.taken.passes += u64::from(phases.forces);
-        self.work.charge_motion();
+        if phases.forces {
+            self.work.charge_pass();
+        }
+        self.charge_motion();
         if self.limits.are_absent {
             return true;
         }
@@ -227,8 +258,8 @@ impl Robust {
                 (particle.position, particle.velocity) = (start.position, start.velocity);
             }
             self.flow.advance(particles, h);
-            self.work.taken.passes += 1;
-            self.work.charge_motion();
+            self.work.charge_pass();
+            self.charge_motion();
             let (mut change, mut travel) = (0.0_f64, 0.0_f64);
             for ((particle, before), start) in particles.iter().zip(&self.before).zip(&self.start) {
                 change = larger(change, (particle.position - before).norm());

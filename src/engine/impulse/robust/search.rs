@@ -15,6 +15,9 @@ use crate::recording::{EventKind, Wall};
 /// Corrections of the time of an impact under forces that depend on places.
 const REFINEMENTS: u32 = 4;
 
+/// Operations to lay the way of a body and to see that it meets no wall.
+const OPERATIONS_A_WAY: u64 = 100;
+
 /// What comes first in a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Next {
@@ -98,8 +101,8 @@ impl Robust {
         if phases.contact.is_some() {
             let travel = self.travel.iter().copied().fold(0.0, f64::max);
             let mut neighbours = std::mem::take(&mut self.neighbours);
-            let near = neighbours.within(&self.start, 2.0 * travel);
-            self.work.taken.pairs += near.len() as u64;
+            let near = neighbours.within(&self.start, 2.0 * travel, &mut self.work.meter);
+            self.work.charge_pairs(near.len() as u64);
             for [a, b] in near {
                 let kind = EventKind::Contact { a: *a, b: *b };
                 if resting.is_empty() || !resting.contains(&kind) {
@@ -126,8 +129,9 @@ impl Robust {
                 until = offer(slowed(way, rest.speed, until), EventKind::Rest { body });
             }
         }
-        self.work
-            .charge_looks(self.ways.iter().map(|way| way.looks.get()).sum());
+        self.work.count_bodies(OPERATIONS_A_WAY);
+        let looks = self.ways.iter().map(|way| way.looks.get()).sum();
+        self.work.charge_looks(looks);
         first
     }
 

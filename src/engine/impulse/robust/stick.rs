@@ -1,8 +1,9 @@
 //! Bounces too low to be seen, ended.
 
 use super::super::Particle;
-use super::together::{account, coupling, square, work};
+use super::together::{OPERATIONS_AN_ENTRY, account, coupling, square, work};
 use super::touch::Touch;
+use crate::physics::Meter;
 use crate::recording::{Account, Entry};
 
 /// Brings to rest the rates of these touches, all together.
@@ -15,9 +16,12 @@ use crate::recording::{Account, Entry};
 pub(super) fn bring_to_rest(
     particles: &mut [Particle],
     touches: &[Touch],
+    meter: &mut Meter,
     mut book: impl FnMut(Account, Entry),
 ) {
     let count = touches.len();
+    let squared = (count * count) as u64;
+    meter.add(OPERATIONS_AN_ENTRY * squared);
     let inverse = |body: usize| 1.0 / particles[body].mass;
     let matrix = square(touches, |one, other| coupling(one, other, &inverse));
     let product =
@@ -29,9 +33,10 @@ pub(super) fn bring_to_rest(
     let mut size = dot(&residual, &residual);
     let enough = 1e-30 * size;
     for _ in 0..2 * count {
+        meter.add(squared + 10 * count as u64);
         let pushed = product(&direction);
         let curvature = dot(&direction, &pushed);
-        if size <= enough || curvature.is_nan() || curvature <= 0.0 {
+        if size <= enough || curvature.is_nan() || curvature <= 0.0 || meter.is_spent() {
             break;
         }
         let step = size / curvature;
@@ -98,7 +103,7 @@ mod tests {
                 .sum::<f64>()
         };
         let before = (momentum(&all), energy(&all));
-        bring_to_rest(&mut all, &touches, |_, _| {});
+        bring_to_rest(&mut all, &touches, &mut Meter::default(), |_, _| {});
         for touch in &touches {
             assert!(touch.rate(&all).abs() < 1e-21, "{}", touch.rate(&all));
         }
@@ -112,7 +117,7 @@ mod tests {
     fn numbers_beyond_those_of_doubles_change_no_velocity() {
         for (masses, speed) in [([1e9; 3], 1e-160), ([1e-300; 3], 1e10)] {
             let (mut all, touches) = ring(masses, speed);
-            bring_to_rest(&mut all, &touches, |_, _| {});
+            bring_to_rest(&mut all, &touches, &mut Meter::default(), |_, _| {});
             let most = all.iter().map(|p| p.velocity.norm()).sum::<f64>();
             assert!(most <= 7.0 * speed, "{masses:?}: {most}");
         }
@@ -129,7 +134,7 @@ mod tests {
         };
         let row: Vec<Sphere> = (0..12).map(sphere).collect();
         let (_, mut all, touches) = start(&row, "[effects.contact]\nrestitution=0.5\n");
-        bring_to_rest(&mut all, &touches, |_, _| {});
+        bring_to_rest(&mut all, &touches, &mut Meter::default(), |_, _| {});
         for touch in &touches {
             // A dozen roundings, enlarged by the ratio of the masses.
             assert!(touch.rate(&all).abs() < 1e-20, "{}", touch.rate(&all));
@@ -157,7 +162,7 @@ mod tests {
             );
             let (_, mut all, touches) = start(&row, &effects);
             assert_eq!(touches.len(), usize::from(count) + 1);
-            bring_to_rest(&mut all, &touches, |_, _| {});
+            bring_to_rest(&mut all, &touches, &mut Meter::default(), |_, _| {});
             // A rounding of rates below 2e-7 for each sphere, enlarged by the ratio of the masses.
             let left = f64::EPSILON * 2e-7 * f64::from(count) * mass(3);
             for touch in &touches {

@@ -3,8 +3,8 @@
 use super::super::observer::Observer;
 use super::super::{Particle, books};
 use super::touch::Touch;
-use crate::physics::Vector3;
 use crate::physics::complementarity::pushes;
+use crate::physics::{Meter, Vector3};
 use crate::recording::{Account, Entry, EventKind};
 use crate::scene::Rest;
 
@@ -18,6 +18,11 @@ const LOSING_MAX: u32 = 100;
 /// Stops after which a body counts as standing for the rest of the instant.
 const STOPS_MAX: u32 = 20;
 
+/// Operations of a round for a touch and for a body.
+const OPERATIONS_A_TOUCH: u64 = 40;
+/// Operations for an entry of the matrix of touches.
+pub(super) const OPERATIONS_AN_ENTRY: u64 = 10;
+
 /// The bodies and touches of an instant.
 pub(super) struct Instant<'a> {
     pub(super) particles: &'a mut [Particle],
@@ -25,6 +30,8 @@ pub(super) struct Instant<'a> {
     pub(super) rest: Option<Rest>,
     /// The step of the scene, s.
     pub(super) dt: f64,
+    /// Counts the work; once it is spent, nothing is solved any more.
+    pub(super) meter: &'a mut Meter,
 }
 
 /// An impact or a stop that happened.
@@ -91,6 +98,11 @@ impl Instant<'_> {
         let mut stops = vec![0; self.stopped_len()];
         let mut first = 0.0_f64;
         for round in 0.. {
+            let touched = (self.touches.len() + self.particles.len()) as u64;
+            self.meter.add(OPERATIONS_A_TOUCH * touched);
+            if self.meter.is_spent() {
+                break;
+            }
             let inverse = self.inverse_masses(&stops);
             let violated: Vec<(Touch, f64)> = self
                 .touches
@@ -176,12 +188,15 @@ impl Instant<'_> {
                 .copied()
                 .unwrap_or(1.0 / particles[body].mass)
         };
+        let count = violated.len() as u64;
+        // A matrix, and up to three times the energy by it.
+        self.meter.add((OPERATIONS_AN_ENTRY + 6) * count * count);
         let matrix = square(violated, |one, other| coupling(&one.0, &other.0, &inverse));
         let entry = |i: usize, j: usize| matrix[i * violated.len() + j];
         let rates: Vec<f64> = violated.iter().map(|(_, rate)| *rate).collect();
         let stopping = match rates.as_slice() {
             [rate] => vec![(-rate / entry(0, 0)).max(0.0)],
-            _ => pushes(&entry, &rates, &vec![true; rates.len()]),
+            _ => pushes(&entry, &rates, &vec![true; rates.len()], self.meter),
         };
         let es: Vec<f64> = violated
             .iter()
@@ -336,6 +351,7 @@ mod tests {
             touches: &touches,
             rest: phases.rest,
             dt: 1.0,
+            meter: &mut Meter::default(),
         };
         let mut notes = 0;
         let settled = instant.settle(&mut |_| notes += 1);

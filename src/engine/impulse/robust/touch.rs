@@ -4,7 +4,7 @@ use super::super::Particle;
 use super::super::contacts::line_of_action;
 use super::super::phases::Phases;
 use super::neighbours::Neighbours;
-use crate::physics::Vector3;
+use crate::physics::{Meter, Vector3};
 use crate::recording::{EventKind, Wall};
 
 /// Surfaces nearer than this share of the smaller radius touch …
@@ -17,6 +17,11 @@ const LOW: f64 = 1e-6;
 /// Slower than this share of their speeds, and of what their forces make of them in a step, two
 /// surfaces neither approach nor part.
 const STILL: f64 = 1e-12;
+
+/// Operations to see that a pair does not touch.
+const OPERATIONS_A_PAIR: u64 = 10;
+/// Operations to see that a body touches no wall.
+const OPERATIONS_AT_WALLS: u64 = 40;
 
 /// Two surfaces that touch, and what an impulse between them does.
 #[derive(Debug, Clone, Copy)]
@@ -170,6 +175,7 @@ pub(super) fn touching(
     particles: &[Particle],
     neighbours: &mut Neighbours,
     into: &mut Vec<Touch>,
+    meter: &mut Meter,
 ) {
     into.clear();
     let mut offer = |kind| {
@@ -180,7 +186,9 @@ pub(super) fn touching(
         // More than what counts as near.
         let room = |p: &Particle| 1e-6 * p.radius + 64.0 * f64::EPSILON * p.position.amax();
         let room = particles.iter().map(room).fold(0.0_f64, f64::max);
-        for [a, b] in neighbours.within(particles, 2.0 * room) {
+        let near = neighbours.within(particles, 2.0 * room, meter);
+        meter.add(OPERATIONS_A_PAIR * near.len() as u64);
+        for [a, b] in near {
             let (one, other) = (&particles[*a], &particles[*b]);
             let rounding = 2.0 * ROUNDINGS * f64::EPSILON * one.position.amax();
             let reach = one.radius + other.radius + rounding;
@@ -193,6 +201,7 @@ pub(super) fn touching(
     }
     if let Some(cushions) = &phases.cushions {
         let half = cushions.half_extents();
+        meter.add(OPERATIONS_AT_WALLS * particles.len() as u64);
         for (body, particle) in particles.iter().enumerate() {
             for wall in Wall::ALL {
                 let (axis, side) = wall.axis_and_side();
@@ -236,6 +245,7 @@ pub(super) mod tests {
             &particles,
             &mut Neighbours::default(),
             &mut touches,
+            &mut Meter::default(),
         );
         (phases, particles, touches)
     }
