@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::physics::BodyState;
 use crate::physics::real::Real;
 use crate::recording::{
-    self, COMPARABLE_DIGITS, EventLog, Outcome, Recording, Work, initial_states,
+    self, COMPARABLE_DIGITS, Digits, EventLog, Outcome, Recording, Work, initial_states,
 };
 use crate::scene::Scene;
 
@@ -125,12 +125,28 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         sample += 1;
     }
     recording.work = published.work();
-    let scale = Scale::of(&recording);
+    let (digits, undetermined) = judged(scene, &recording, errors, (&published, operations))?;
+    Ok(Certified {
+        digits,
+        recording,
+        undetermined,
+    })
+}
+
+/// The digits that are left by these errors, and where the model has no single answer, if
+/// anywhere: where another order of simultaneous or nearly simultaneous impacts decides.
+fn judged(
+    scene: &Scene,
+    recording: &Recording,
+    mut errors: Vec<Parting>,
+    (published, operations): (&Voice, u64),
+) -> Result<(Vec<Digits>, Option<recording::Undetermined>)> {
+    let scale = Scale::of(recording);
     let mut undetermined = match published.undetermined() {
         Some(from) => Some(recording::Undetermined {
             time: from.time,
             bodies: from.bodies.to_vec(),
-            spread: Some(spread(scene, &recording, from.time, operations)?),
+            spread: Some(spread(scene, recording, from.time, operations)?),
         }),
         None => None,
     };
@@ -154,7 +170,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     };
     let judge = Judge {
         scene,
-        recording: &recording,
+        recording,
         scale: &scale,
         noted: published.noted(),
         known: (0..digits.len()).take_while(certain).count(),
@@ -163,11 +179,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     if let Some(found) = judge.judge()? {
         undetermined = Some(found);
     }
-    Ok(Certified {
-        digits,
-        recording,
-        undetermined,
-    })
+    Ok((digits, undetermined))
 }
 
 /// How far the impacts in the opposite order lead away, from a time on, over all bodies.
