@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use carom::engine::{EngineKind, EngineSpec, engines, record};
+use carom::engine::{EngineKind, EngineSpec, engine, engines, record};
 use carom::error::Error;
 use carom::scene::{Attraction, Contact, Cushions, Drag, Effects, Gravity, Rest, Scene, Spring};
 use proptest::prelude::*;
@@ -170,6 +170,32 @@ fn run(scene: &Scene, spec: &EngineSpec, dt: f64, kept: &mut Kept) -> Result<(),
     let complete = recording.sample_count() == scene.sample_count() + 1;
     prop_assert!(complete == recording.outcome.is_finished(), "{}", spec.name);
     Ok(())
+}
+
+/// A speed whose square is no number used to give states that are none.
+#[test]
+fn a_speed_without_a_square_ends_the_recording_before_it_is_lost() {
+    let bodies = vec![
+        body("a", 0.5, 0.5, [-1e300, 0.0, 0.0], [0.0, 0.0, -1e300]),
+        body("b", 0.5, 0.5, [-1e300, 0.0, 1e150], [0.0, 0.0, 0.0]),
+    ];
+    let spring = Spring {
+        between: ["a".into(), "b".into()],
+        stiffness: 0.5,
+        rest_length: 0.5,
+        damping: 0.5,
+    };
+    let effects = Effects {
+        contact: Some(Contact { restitution: 0.0 }),
+        springs: vec![spring],
+        ..Effects::default()
+    };
+    let scene = scene(0.5, 0.125, bodies, effects);
+    for name in ["exact", "exact-fast"] {
+        let mut kept = Kept::default();
+        run(&scene, &in_short(engine(name).unwrap()), 0.01, &mut kept).unwrap();
+        assert_eq!(kept.recorded, 1, "{name}");
+    }
 }
 
 #[test]

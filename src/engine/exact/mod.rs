@@ -24,6 +24,7 @@ use std::borrow::Cow;
 
 use super::{ExactSettings, Phase, Simulation};
 use crate::error::Result;
+use crate::physics::BodyState;
 use crate::recording::{Digits, Outcome, Recording, Undetermined};
 use crate::scene::{Attraction, Scene};
 
@@ -88,8 +89,17 @@ pub fn simulation(scene: &Scene, settings: ExactSettings) -> Result<Box<dyn Simu
 /// # Errors
 /// As [`simulation`].
 pub fn record(scene: &Scene, voice: &str, settings: ExactSettings) -> Result<Recording> {
-    let certified = certified(scene, settings.operations)?;
+    let mut certified = certified(scene, settings.operations)?;
     let mut recording = certified.recording;
+    let lost = |(sample, states): (usize, &[BodyState])| {
+        Outcome::blown_up(states, scene.sample_time(sample)).map(|outcome| (sample, outcome))
+    };
+    let found = recording.samples().enumerate().find_map(lost);
+    if let Some((sample, outcome)) = found {
+        recording = recording.up_to(sample, scene);
+        recording.outcome = outcome;
+        certified.digits.truncate(recording.sample_count());
+    }
     voice.clone_into(&mut recording.voice);
     recording.digits = Some(certified.digits);
     recording.undetermined = certified.undetermined;

@@ -216,6 +216,7 @@ mod tests {
             write(SUMMARY, foreign);
             assert!(super::listing(folder, false).is_none(), "{foreign}");
         }
+        write(SUMMARY, &text(false));
         assert!(super::listing(folder, true).is_none());
         write(SUMMARY, &text(true));
         assert_eq!(super::listing(folder, true).unwrap().len(), 2);
