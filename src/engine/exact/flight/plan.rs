@@ -320,7 +320,7 @@ impl<R: Real> World<R> {
                 // Seen from each other they fly straight: what has just parted cannot meet.
                 if let Some(clock) = clock_to_contact(&d, &w, sum, before)
                     && !self.have_just_met(body, other)
-                    && (clock > self.tie || self.approaches([me, &them]))
+                    && (clock > self.tie || Self::approaches([me, &them]))
                 {
                     let kind = contact(body, other);
                     earliest.offer(clock, Deed::Event(kind), self.balls[other].count);
@@ -344,7 +344,7 @@ impl<R: Real> World<R> {
     /// Whether touching bodies approach by more than rounding: those that came to move together
     /// at one instant do not.
     #[cold]
-    fn approaches(&self, [a, b]: [&State<R>; 2]) -> bool {
+    fn approaches([a, b]: [&State<R>; 2]) -> bool {
         let (d, w) = (a.position - b.position, a.velocity - b.velocity);
         let none = R::from_f64(NOISE_ROUNDINGS * R::EPSILON);
         let speeds = length(&a.velocity) + length(&b.velocity);

@@ -127,8 +127,8 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     recording.work = published.work();
     let (digits, undetermined) = judged(scene, &recording, errors, (&published, operations))?;
     Ok(Certified {
-        digits,
         recording,
+        digits,
         undetermined,
     })
 }
