@@ -199,6 +199,30 @@ impl EventLog {
         }
     }
 
+    /// Sums the impulses of the events from that place in the list on, one event a kind: a series
+    /// without end at one instant is one event.
+    pub fn sum_from(&mut self, place: usize) {
+        let place = place.min(self.events.len());
+        for event in self.events.split_off(place) {
+            let same = self.events[place..]
+                .iter_mut()
+                .find(|kept| kept.kind == event.kind);
+            if let Some(same) = same {
+                same.impulse += event.impulse;
+                match event.kind {
+                    EventKind::Contact { .. } => self.counts.contacts -= 1,
+                    EventKind::Cushion { .. } => self.counts.cushions -= 1,
+                    EventKind::Rest { .. } => self.counts.rests -= 1,
+                }
+            } else {
+                let latest = self.latest.entry(event.kind).or_default();
+                (latest.place, latest.interval) = (self.events.len(), self.interval);
+                latest.kept = 1;
+                self.events.push(event);
+            }
+        }
+    }
+
     /// Tells that a sample has been reached.
     pub fn end_interval(&mut self) {
         self.interval += 1;
@@ -294,6 +318,28 @@ mod tests {
         assert_eq!(log.latest.len(), EVENTS_MAX);
         assert_eq!(log.counts().contacts, 1_124_250);
         assert_eq!(log.merged(), 124_250);
+    }
+
+    #[test]
+    fn a_series_at_one_instant_is_one_event_a_kind() {
+        let kinds = [
+            EventKind::Contact { a: 0, b: 1 },
+            EventKind::Rest { body: 0 },
+        ];
+        let mut log = EventLog::default();
+        for (turn, kind) in kinds.iter().cycle().take(5).enumerate() {
+            let (time, impulse) = (f64::from(u8::from(turn > 0)), 1.0);
+            let kind = *kind;
+            log.push(Event {
+                time,
+                kind,
+                impulse,
+            });
+        }
+        log.sum_from(1);
+        let impulses = log.events().iter().map(|event| event.impulse);
+        assert_eq!(impulses.collect::<Vec<_>>(), [1.0, 2.0, 2.0]);
+        assert_eq!((log.counts().contacts, log.counts().rests), (2, 1));
     }
 
     #[test]

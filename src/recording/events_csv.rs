@@ -81,11 +81,13 @@ pub fn read_events(scene: &Scene, input: impl Read, file: &str) -> Result<EventL
         };
         let (time, impulse) = (table.number(0)?, table.number(4)?);
         let latest = events.last().map_or(0.0, |event: &Event| event.time);
-        if !(latest..=scene.duration).contains(&time) {
+        // The last sample may stand a hair past the duration.
+        let end = scene.duration.max(scene.sample_time(scene.sample_count()));
+        if !(latest..=end).contains(&time) {
             return Err(table.wrong(format!(
                 "time {} s: give the events in order of time, from 0 to {} s",
                 number(time),
-                number(scene.duration)
+                number(end)
             )));
         }
         if impulse < 0.0 {

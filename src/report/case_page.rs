@@ -366,7 +366,7 @@ fn pair_row(pair: &PairSummary, unit: &str) -> PairRow {
         position: with_unit(pair.position_divergence_max, unit),
         relative: percent(pair.position_divergence_relative),
         when: format!("{} s", engineering(pair.at_time_s)),
-        body: code(&pair.worst_body).to_string(),
+        body: code(&pair.worst_body),
         velocity: with_unit(pair.velocity_divergence_rms_max, &speed),
         energy: percent(pair.energy_difference_max),
         momentum: percent(pair.momentum_difference_max),

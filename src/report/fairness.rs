@@ -26,7 +26,7 @@ pub fn support_table() -> String {
     let mut columns: Vec<(Vec<String>, Vec<String>)> = Vec::new();
     for spec in engines() {
         let own = supports(&spec);
-        let name = code(&spec.name).to_string();
+        let name = code(&spec.name);
         match columns.iter_mut().find(|(_, cells)| *cells == own) {
             Some((names, _)) => names.push(name),
             None => columns.push((vec![name], own)),

@@ -10,7 +10,7 @@ pub(super) fn other_models(summary: &Summary) -> Vec<String> {
         let Some(way) = voice.another_model else {
             continue;
         };
-        let name = code(&voice.voice).to_string();
+        let name = code(&voice.voice);
         match ways.iter_mut().find(|(known, _)| *known == way) {
             Some((_, names)) => names.push(name),
             None => ways.push((way, vec![name])),

@@ -19,6 +19,7 @@ mod effects;
 mod exact_flight;
 mod exact_forces;
 mod exact_lies;
+mod exact_ties;
 mod example_solvers;
 #[cfg(unix)]
 mod external;

@@ -8,9 +8,12 @@ mod claim;
 mod effort;
 pub mod flight;
 pub mod forces;
+mod instant;
+mod nudge;
 mod order;
 mod parting;
 mod settling;
+mod ties;
 mod wide;
 
 pub use crate::physics::real::Real;
@@ -114,7 +117,8 @@ fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     }
     let certified = flight::certified(scene, operations)?;
     let piles_up = matches!(certified.recording.outcome, Outcome::Collapsed { .. });
-    if piles_up && can_come_to_lie(scene) {
+    // Only the other half knows contacts that last, or come to without an end of impacts.
+    if piles_up && scene.effects.rest.is_none() {
         return forces::certified(scene, operations);
     }
     Ok(certified)
@@ -123,11 +127,11 @@ fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
 /// How digits are certified, in words.
 fn certification(scene: &Scene) -> &'static str {
     if has_forces(scene) {
-        "two computations of another order, tolerance and least bounce; the digits in which they \
-         agree, less one"
+        "a second computation of another order, tolerance and least bounce from inputs moved by \
+         2^-90; the digits in which they agree, less one; near ties in other orders"
     } else {
         "two more computations from inputs moved by 2^-90, which show how errors grow; the digits \
-         that 64 roundings an event leave, less one"
+         that 64 roundings an event leave, less one; near ties in other orders"
     }
 }
 

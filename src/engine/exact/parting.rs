@@ -40,6 +40,14 @@ impl Parting {
         self.with(states.iter().zip(others).map(difference))
     }
 
+    /// What both allow for together.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            position: self.position + other.position,
+            velocity: self.velocity + other.velocity,
+        }
+    }
+
     /// So many times as far apart.
     pub fn scaled(self, factor: f64) -> Self {
         Self {

@@ -1,17 +1,19 @@
 //! How many digits a run vouches for, and where the model itself has no single answer.
 
+use super::judge::Judge;
 use super::law::State;
-use super::simulation::{FlightSimulation, Simultaneous};
+use super::simulation::FlightSimulation;
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::Scale;
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
+use crate::engine::exact::ties::{COPIES, Measure, Tie, ties};
 use crate::engine::exact::wide::Wide;
 use crate::error::Result;
 use crate::physics::Vector3;
 use crate::physics::real::Real;
-use crate::recording::{Digits, Recording, Undetermined, initial_states};
+use crate::recording::{Digits, Recording, initial_states};
 use crate::scene::Scene;
 
 /// Inputs are moved by this share to see how errors grow: thousands of roundings.
@@ -20,29 +22,36 @@ const NUDGE: f64 = 8.077_935_669_463_161e-28; // 2^-90
 /// An event may add this many roundings to a run's error.
 const ROUNDINGS_AN_EVENT: f64 = 64.0;
 
-/// Answers that differ by less than this share of the scene's size are the same.
-const SAME: f64 = 1e-9;
+/// So many samples in a row may each fall on an impact.
+const MOMENT: usize = 8;
+
+/// So many copies go along with a run; ties are measured on more of them, where there may be any.
+const ALONG: usize = 2;
+
+/// Two copies may show less of what is open than six by this factor, but for one in a thousand.
+const DOUBT: f64 = 1e3;
 
 /// Runs a scene and vouches for digits.
 ///
-/// Method: the run is made in double-doubles; three more go along with it, sample by sample:
-/// one in doubles and two in double-doubles from inputs moved by 2^-90. How far these part is how
-/// errors grow; the claim leaves room for 64 roundings an event and a factor of 10. Where
-/// events coincide, runs with other orders of them are compared.
+/// Method: the run is made in double-doubles; two more go along with it, sample by sample, from
+/// inputs moved by 2^-90. How far these part is how errors grow; the claim leaves room for 64
+/// roundings an event and a factor of 10. Where events nearly coincide, their other orders are
+/// compared ([`ties`](crate::engine::exact::ties)).
 /// Units: `operations` bounds each run, in elementary operations.
 ///
 /// # Errors
 /// As [`FlightSimulation::new`].
 pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
-    let mut run = FlightSimulation::<Wide>::new(scene, TieOrder::Rule)?.limited(operations);
-    let mut moved = [1, 2].map(|seed| -> Result<_> {
-        let moved = FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed)?;
-        Ok(moved.limited(operations))
-    });
-    let mut double = FlightSimulation::<f64>::new(scene, TieOrder::Rule)?.limited(operations);
+    let start = || FlightSimulation::<Wide>::new(scene, TieOrder::Rule);
+    let mut run = start()?.limited(operations).watched();
+    let copy = |seed: u64| -> Result<_> {
+        let copy = FlightSimulation::<Wide>::perturbed(scene, NUDGE, seed)?;
+        Ok(copy.limited(operations).watched())
+    };
+    let mut copies = COPIES.take(ALONG).map(copy).collect::<Result<Vec<_>>>()?;
     let mut recording = Recording::at_start("exact", scene);
     let mut states = initial_states(scene);
-    let mut growth = vec![Growth::default()];
+    let mut growth = vec![Parting::default()];
     for sample in 1..=scene.sample_count() {
         let halt = run.advance_to(sample, Some(&mut recording.events));
         run.state_into(&mut states);
@@ -50,8 +59,7 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             break;
         }
         let mut parting = Parting::default();
-        for other in &mut moved {
-            let Ok(other) = other else { continue };
+        for other in &mut copies {
             // A moved run that has ended vouches for nothing any more.
             if other.advance_to(sample, None).is_some() {
                 parting = Parting::unknown();
@@ -59,24 +67,24 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
             parting = parting.with(differences(&run, other.states()));
         }
         let events = ROUNDINGS_AN_EVENT * Wide::EPSILON * float(run.event_count());
-        let doubles = if double.advance_to(sample, None).is_some() {
-            Parting::unknown()
-        } else {
-            let states = double.states().map(|state| widened(&state));
-            Parting::default().with(differences(&run, states))
-        };
-        growth.push(Growth {
-            errors: parting.scaled(SAFETY * (events / NUDGE).max(1.0)),
-            doubles,
-        });
+        growth.push(parting.scaled(SAFETY * (events / NUDGE).max(1.0)));
     }
     recording.work = run.work();
     let scale = Scale::of(&recording);
-    let undetermined = if run.simultaneous().is_empty() {
-        None
-    } else {
-        undetermined(scene, &recording, &growth, &scale, &run, operations)?
-    };
+    let ties = measured_ties(&run, copies, copy)?;
+    let mut undetermined = None;
+    if !ties.is_empty() {
+        let judge = Judge {
+            scene,
+            recording: &recording,
+            scale: &scale,
+        };
+        let judgement = judge.judge(&ties, start()?.limited(operations));
+        for (errors, parting) in growth.iter_mut().zip(&judgement.partings) {
+            *errors = errors.plus(*parting);
+        }
+        undetermined = judgement.undetermined;
+    }
     Ok(Certified {
         digits: digits(&growth, &scale),
         recording,
@@ -84,13 +92,38 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
     })
 }
 
-/// What errors have grown to at a sample.
-#[derive(Debug, Clone, Copy, Default)]
-struct Growth {
-    /// Those that the run may have.
-    errors: Parting,
-    /// Those of the run in doubles.
-    doubles: Parting,
+/// The ties of a run, measured on more copies where two of them leave room for any.
+fn measured_ties(
+    run: &FlightSimulation<Wide>,
+    mut copies: Vec<FlightSimulation<Wide>>,
+    copy: impl Fn(u64) -> Result<FlightSimulation<Wide>>,
+) -> Result<Vec<Tie<Wide>>> {
+    let Some(watch) = run.watch.as_deref() else {
+        return Ok(Vec::new());
+    };
+    let measured = |copies: &[FlightSimulation<Wide>], doubt: f64| {
+        let watches = copies.iter().filter_map(|copy| copy.watch.as_deref());
+        let noted: Vec<_> = watches.map(|watch| &watch.noted).collect();
+        let (share, roundings) = (NUDGE, 1.0);
+        let measure = Measure {
+            share,
+            roundings,
+            doubt,
+        };
+        ties(&watch.noted, &noted, measure)
+    };
+    let doubtful = measured(&copies, DOUBT);
+    let Some(last) = doubtful.iter().map(|tie| tie.to).reduce(Real::larger) else {
+        return Ok(Vec::new());
+    };
+    let within = Wide::from_f64(watch.noted.within());
+    for seed in COPIES.skip(ALONG) {
+        let mut copy = copy(seed)?;
+        // One that ends sooner has noted what it could.
+        copy.run_to(last + within, &mut None);
+        copies.push(copy);
+    }
+    Ok(measured(&copies, 1.0))
 }
 
 /// How far a run is from another, body by body: positions and velocities.
@@ -104,90 +137,24 @@ fn differences(
     })
 }
 
-/// Digits from errors; once a digit of a position is lost it does not come back.
+/// Digits from errors; once a digit is lost it does not come back.
 ///
-/// A velocity may differ at one sample alone, when an impact falls on it: the sample claims
-/// nothing then, but its neighbours do.
-fn digits(growth: &[Growth], scale: &Scale) -> Vec<Digits> {
+/// A velocity may differ for a moment alone, when an impact falls on a sample: that sample claims
+/// nothing then, but those after it do.
+fn digits(growth: &[Parting], scale: &Scale) -> Vec<Digits> {
     let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
     let mut digits = Vec::with_capacity(growth.len());
-    for (sample, Growth { errors, .. }) in growth.iter().enumerate() {
+    for (sample, errors) in growth.iter().enumerate() {
         position = position.max(errors.position);
-        let around = &growth[sample.saturating_sub(1)..growth.len().min(sample + 2)];
+        let around = &growth[sample.saturating_sub(1)..growth.len().min(sample + MOMENT)];
         let lasting = around
             .iter()
-            .fold(f64::INFINITY, |least, near| least.min(near.errors.velocity));
+            .fold(f64::INFINITY, |least, near| least.min(near.velocity));
         velocity = velocity.max(lasting);
         let of_velocity = velocity.max(errors.velocity);
         digits.push(scale.digits(position, of_velocity));
     }
     digits
-}
-
-/// Runs other orders of simultaneous events, and tells where they first part.
-fn undetermined(
-    scene: &Scene,
-    recording: &Recording,
-    growth: &[Growth],
-    scale: &Scale,
-    run: &FlightSimulation<Wide>,
-    operations: u64,
-) -> Result<Option<Undetermined>> {
-    let mut first = usize::MAX;
-    let mut spread = 0.0_f64;
-    for order in [
-        TieOrder::Backwards,
-        TieOrder::Drawn(1),
-        TieOrder::Drawn(2),
-        TieOrder::Drawn(3),
-    ] {
-        let mut other = FlightSimulation::<Wide>::new(scene, order)?.limited(operations);
-        let mut states = initial_states(scene);
-        for (sample, Growth { doubles, .. }) in growth.iter().enumerate().skip(1) {
-            if other.advance_to(sample, None).is_some() {
-                break;
-            }
-            other.state_into(&mut states);
-            let apart = Parting::default()
-                .with_states(&states, recording.sample(sample))
-                .position;
-            // Other orders also move events by the width of an instant, some hundred roundings
-            // of a double, which grow as those of the run in doubles do.
-            let same = (SAME * scale.diagonal).max(1e4 * doubles.position);
-            if apart > same {
-                first = first.min(sample);
-                spread = spread.max(apart);
-            }
-        }
-    }
-    if first == usize::MAX {
-        return Ok(None);
-    }
-    let before = |noted: &&Simultaneous| noted.time <= scene.sample_time(first);
-    let simultaneous = run.simultaneous();
-    let Some(culprit) = simultaneous.iter().rfind(before) else {
-        return Ok(None);
-    };
-    let near = 1e-9 * scene.duration;
-    let mut bodies: Vec<_> = simultaneous
-        .iter()
-        .filter(|noted| (noted.time - culprit.time).abs() <= near)
-        .map(|noted| noted.body)
-        .collect();
-    bodies.sort_unstable();
-    bodies.dedup();
-    Ok(Some(Undetermined {
-        time: culprit.time,
-        bodies,
-        spread: Some(spread),
-    }))
-}
-
-fn widened(state: &State<f64>) -> State<Wide> {
-    State {
-        position: state.position.map(Wide::from_f64),
-        velocity: state.velocity.map(Wide::from_f64),
-    }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]

@@ -85,6 +85,22 @@ impl<R: Real> Law<R> {
         }
     }
 
+    /// The law in doubles.
+    pub fn roughly(&self) -> Law<f64> {
+        match self {
+            Self::Straight => Law::Straight,
+            Self::Drag { rate } => Law::Drag {
+                rate: rate.to_f64(),
+            },
+            Self::Gravity { acceleration } => Law::Gravity {
+                acceleration: acceleration.map(Real::to_f64),
+            },
+            Self::Mixed { acceleration } => Law::Mixed {
+                acceleration: acceleration.map(Real::to_f64),
+            },
+        }
+    }
+
     /// Whether impacts of pairs are searched for, having no closed form.
     pub fn is_searched(&self) -> bool {
         matches!(self, Self::Mixed { .. })

@@ -7,6 +7,7 @@
 mod certify;
 mod encounter;
 mod grid;
+mod judge;
 mod law;
 mod model;
 mod perturb;
@@ -14,11 +15,11 @@ mod plan;
 mod plane;
 mod queue;
 mod runaway;
-
 mod simulation;
 mod turn;
+mod watch;
 mod world;
 
 pub use certify::certified;
 
-pub use simulation::{FlightSimulation, Simultaneous};
+pub use simulation::FlightSimulation;

@@ -11,8 +11,7 @@ use crate::scene::overlap::survey;
 /// Events nearer than this many units of rounding of the duration are simultaneous.
 const TIE_ROUNDINGS: f64 = 64.0;
 
-/// Events nearer than this share of the duration might be swapped by the last digit of an
-/// input: 64 roundings of a double.
+/// Times nearer than this share of the duration are compared with care: 64 roundings of a double.
 const NEAR: f64 = 64.0 * f64::EPSILON;
 
 /// Room for positions that were meant to touch, in roundings of the largest coordinate.
@@ -49,12 +48,12 @@ pub(super) struct Model<R: Real> {
     /// Speed below which a ball stops, if it ever does.
     pub rest: Option<R>,
     /// Time between two samples, s.
-    pub sample_every: R,
-    /// Length of the simulation, s.
+    pub sample_every: f64,
+    /// Length of the simulation, its last sample included, s.
     pub duration: R,
     /// Events no farther apart are simultaneous, s.
     pub tie: R,
-    /// Events no farther apart might be swapped by the last digit of an input, s.
+    /// Times nearer than this are compared as times, not by the clock of the law, s.
     pub near: R,
 }
 
@@ -72,7 +71,8 @@ impl<R: Real> Model<R> {
                 rate: R::from_f64(drag) / R::from_f64(body.mass),
             })
             .collect();
-        let duration = R::from_f64(scene.duration);
+        let last = scene.sample_time(scene.sample_count());
+        let duration = R::from_f64(scene.duration.max(last));
         let shared = fixed.iter().all(|body| body.radius == fixed[0].radius);
         Self {
             diameter: shared.then(|| fixed[0].radius.twice()),
@@ -89,7 +89,7 @@ impl<R: Real> Model<R> {
                 .rest
                 .filter(|rest| rest.speed > 0.0)
                 .map(|rest| R::from_f64(rest.speed)),
-            sample_every: R::from_f64(scene.sample_every),
+            sample_every: scene.sample_every,
             duration,
             tie: duration * R::from_f64(TIE_ROUNDINGS * R::EPSILON),
             near: duration * R::from_f64(NEAR),

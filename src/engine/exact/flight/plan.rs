@@ -40,8 +40,6 @@ pub(super) struct Planned<R> {
     pub rank: u64,
     /// Count of the partner's changes when this was planned; another count voids the plan.
     pub partner_count: u32,
-    /// Whether another event of the body falls on the same instant, as far as inputs are sure.
-    pub is_crowded: bool,
 }
 
 impl<R: Real> Planned<R> {
@@ -52,7 +50,6 @@ impl<R: Real> Planned<R> {
             deed: Deed::Nothing,
             rank: INTERNAL,
             partner_count: 0,
-            is_crowded: false,
         }
     }
 }
@@ -88,15 +85,12 @@ impl<'a, R: Real> Earliest<'a, R> {
             Deed::Event(kind) => self.order.rank(kind),
             Deed::PlanAgain | Deed::Nothing => INTERNAL,
         };
-        let mut crowded = false;
         if self.clock.is_finite() && clock >= self.clock - self.near {
             // Near in the clock, which late under drag hardly moves: compare the times.
             let [old, new] = [self.clock, clock].map(|u| self.law.time_of_clock(u));
             let (Some(old), Some(new)) = (old, new) else {
                 return;
             };
-            crowded = (new - old).abs() <= self.near && rank != INTERNAL && rank != self.best.rank;
-            self.best.is_crowded |= crowded;
             let earlier = if (new - old).abs() <= self.tie {
                 rank < self.best.rank
             } else {
@@ -112,7 +106,6 @@ impl<'a, R: Real> Earliest<'a, R> {
             deed,
             rank,
             partner_count,
-            is_crowded: crowded,
         };
     }
 
@@ -327,6 +320,7 @@ impl<R: Real> World<R> {
                 // Seen from each other they fly straight: what has just parted cannot meet.
                 if let Some(clock) = clock_to_contact(&d, &w, sum, before)
                     && !self.have_just_met(body, other)
+                    && (clock > self.tie || Self::approaches([me, &them]))
                 {
                     let kind = contact(body, other);
                     earliest.offer(clock, Deed::Event(kind), self.balls[other].count);
@@ -345,6 +339,16 @@ impl<R: Real> World<R> {
                 }
             }
         }
+    }
+
+    /// Whether touching bodies approach by more than rounding: those that came to move together
+    /// at one instant do not.
+    #[cold]
+    fn approaches([a, b]: [&State<R>; 2]) -> bool {
+        let (d, w) = (a.position - b.position, a.velocity - b.velocity);
+        let none = R::from_f64(NOISE_ROUNDINGS * R::EPSILON);
+        let speeds = length(&a.velocity) + length(&b.velocity);
+        -d.dot(&w) > none * speeds * length(&d)
     }
 
     /// Right after their own impact, two bodies have no speed of approach but for rounding.

@@ -6,6 +6,7 @@ use super::model::{Model, accept, start};
 use super::plan::Planned;
 use super::queue::Queue;
 use super::runaway::Runaway;
+use super::watch::Watch;
 use super::world::World;
 use crate::engine::Simulation;
 use crate::engine::exact::effort::Effort;
@@ -39,15 +40,6 @@ impl<R: Real> Agenda<R> {
     }
 }
 
-/// Events that fall on one instant and share a body: the model's rule decides their order.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Simultaneous {
-    /// Time, s.
-    pub time: f64,
-    /// The body that they share.
-    pub body: usize,
-}
-
 /// The event-driven engine for scenes without attraction and springs, in closed form.
 ///
 /// Between events nothing is computed; an event touches one or two bodies. States are exact but
@@ -63,9 +55,12 @@ pub struct FlightSimulation<R: Real> {
     pub(super) events: u64,
     pub(super) instant: R,
     pub(super) cursor: Option<u64>,
+    /// Speeds of approach of the impacts of this instant, and the first of them in the log.
+    pub(super) series: Vec<f64>,
+    pub(super) series_from: usize,
     pub(super) runaway: Runaway,
     pub(super) crossings: u64,
-    pub(super) simultaneous: Vec<Simultaneous>,
+    pub(super) watch: Option<Box<Watch<R>>>,
     pub(super) crowd: Vec<usize>,
     pub(super) slowed: Vec<usize>,
     pub(super) effort: Effort,
@@ -101,7 +96,7 @@ impl<R: Real> FlightSimulation<R> {
         accept(scene)?;
         let mut model = Model::<R>::of(scene);
         let mut states = start(scene);
-        super::perturb::perturb(&mut model, &mut states, size, seed);
+        super::perturb::perturb(&mut model, &mut states, scene, (size, seed));
         Ok(Self::with(model, TieOrder::Rule, &states))
     }
 
@@ -113,9 +108,11 @@ impl<R: Real> FlightSimulation<R> {
             events: 0,
             instant: R::from_f64(f64::NEG_INFINITY),
             cursor: None,
+            series: Vec::new(),
+            series_from: 0,
             runaway: Runaway::new(model.duration.to_f64(), states.len()),
             crossings: 0,
-            simultaneous: Vec::new(),
+            watch: None,
             crowd: Vec::new(),
             slowed: Vec::new(),
             effort: Effort::limited(u64::MAX),
@@ -132,10 +129,21 @@ impl<R: Real> FlightSimulation<R> {
         self
     }
 
-    /// Instants at which events that share a body are simultaneous, as far as inputs are sure.
-    #[must_use]
-    pub fn simultaneous(&self) -> &[Simultaneous] {
-        &self.simultaneous
+    /// The same with an eye on impacts that nearly fall on one instant.
+    pub(super) fn watched(mut self) -> Self {
+        self.watch = Some(Box::new(Watch::new(&self.world)));
+        self
+    }
+
+    /// From here on events within that time count as simultaneous and are taken in that order.
+    pub(super) fn take_together(&mut self, within: R, order: TieOrder) {
+        let tie = self.world.model.tie.larger(within);
+        self.world.tie = tie;
+        self.world.model.near = self.world.model.near.larger(tie);
+        self.world.order = order;
+        self.instant = R::from_f64(f64::NEG_INFINITY);
+        self.cursor = None;
+        self.plan_all();
     }
 
     /// How many events of the model there have been.
@@ -144,15 +152,19 @@ impl<R: Real> FlightSimulation<R> {
         self.events
     }
 
-    /// Present time of the last sample reached, s.
+    /// Present time of the last sample reached, s: the double that is printed.
     #[allow(clippy::cast_precision_loss, reason = "4e7 samples at most")]
     fn sample_time(&self) -> R {
-        self.world.model.sample_every * R::from_f64(self.sample as f64)
+        R::from_f64(self.sample as f64 * self.world.model.sample_every)
     }
 
     /// States at the last sample reached, in the engine's own scalar.
     pub(super) fn states(&self) -> impl Iterator<Item = State<R>> {
-        let time = self.sample_time();
+        self.states_at(self.sample_time())
+    }
+
+    /// States at a time, on the flights of now.
+    pub(super) fn states_at(&self, time: R) -> impl Iterator<Item = State<R>> {
         (0..self.agendas.len()).map(move |body| self.world.state_at(body, time))
     }
 

@@ -1,8 +1,9 @@
 //! Taking the next event: which one among simultaneous ones, and what it does.
 
 use super::plan::Deed;
-use super::simulation::{FlightSimulation, Simultaneous};
+use super::simulation::FlightSimulation;
 use super::world::Impact;
+use crate::engine::exact::instant::is_endless;
 use crate::engine::exact::order::INTERNAL;
 use crate::physics::real::Real;
 use crate::recording::{CollapseReason, Event, EventKind, EventLog, Outcome};
@@ -19,15 +20,13 @@ const OPERATIONS_A_PAIR: f64 = 30.0;
 /// The same by a search of some ten steps.
 const OPERATIONS_A_SEARCH: f64 = 1000.0;
 
-/// At most so many instants with simultaneous events are remembered, from the first on.
-const SIMULTANEOUS_KEPT: usize = 64;
-
 impl<R: Real> FlightSimulation<R> {
     /// All events up to a time. Gives the outcome if they never end, or are too many.
     pub(super) fn run_to(&mut self, time: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
         loop {
             let (due, first) = self.queue.first();
             if due > time {
+                self.end_series(log);
                 return None;
             }
             if self.effort.is_spent() {
@@ -35,9 +34,9 @@ impl<R: Real> FlightSimulation<R> {
                     time: self.world.now.to_f64(),
                 });
             }
-            let near = due + self.world.model.near;
-            let body = if self.queue.is_crowded(near) {
-                let Some(chosen) = self.choose(due, near) else {
+            let limit = due + self.world.tie;
+            let body = if self.queue.is_crowded(limit) {
+                let Some(chosen) = self.choose(due, limit) else {
                     continue;
                 };
                 chosen
@@ -70,9 +69,9 @@ impl<R: Real> FlightSimulation<R> {
     ///
     /// The model's rule goes through contacts, cushions and rests in rounds: an event that was
     /// already passed in this round waits for the next one.
-    fn choose(&mut self, due: R, near: R) -> Option<usize> {
+    fn choose(&mut self, due: R, limit: R) -> Option<usize> {
         let mut crowd = std::mem::take(&mut self.crowd);
-        self.queue.up_to(near, &mut crowd);
+        self.queue.up_to(limit, &mut crowd);
         let void = crowd.iter().copied().find(|body| self.is_void(*body));
         if let Some(body) = void {
             self.plan(body);
@@ -87,8 +86,6 @@ impl<R: Real> FlightSimulation<R> {
             self.crowd = crowd;
             return Some(a);
         }
-        self.note_simultaneous(&crowd, near);
-        let limit = due + self.world.tie;
         let passed = self
             .cursor
             .filter(|_| due <= self.instant + self.world.tie)
@@ -125,39 +122,6 @@ impl<R: Real> FlightSimulation<R> {
         }
     }
 
-    fn note_simultaneous(&mut self, crowd: &[usize], near: R) {
-        let mut events = Vec::new();
-        for body in crowd {
-            let planned = &self.agendas[*body].planned;
-            if let Deed::Event(kind) = planned.deed
-                && planned.time <= near
-                && !events.contains(&kind)
-            {
-                events.push(kind);
-            }
-        }
-        let mut seen = Vec::new();
-        for kind in events {
-            let (first, second) = kind.bodies();
-            for body in std::iter::once(first).chain(second) {
-                if seen.contains(&body) {
-                    self.remember_simultaneous(near, body);
-                }
-                seen.push(body);
-            }
-        }
-    }
-
-    fn remember_simultaneous(&mut self, time: R, body: usize) {
-        let noted = Simultaneous {
-            time: time.to_f64(),
-            body,
-        };
-        if self.simultaneous.len() < SIMULTANEOUS_KEPT && self.simultaneous.last() != Some(&noted) {
-            self.simultaneous.push(noted);
-        }
-    }
-
     /// Takes what a body has next: its event, a new plan, or a change of cell.
     fn take(&mut self, body: usize, due: R, log: &mut Option<&mut EventLog>) -> Option<Outcome> {
         let agenda = self.agendas[body];
@@ -174,13 +138,15 @@ impl<R: Real> FlightSimulation<R> {
         }
         let approach = match agenda.planned.deed {
             Deed::Event(kind) => {
-                if agenda.planned.is_crowded {
-                    self.remember_simultaneous(agenda.planned.time, body);
+                if self.world.now > self.instant + self.world.tie {
+                    self.end_series(log);
                 }
                 self.advance_round(agenda.planned.rank);
+                let foreseen = self.foresee(kind);
                 let impact = self.happen(kind);
                 if let Some(impact) = impact {
-                    self.note(kind, impact.impulse, log);
+                    self.watch(kind, foreseen);
+                    self.note(kind, impact, log);
                 }
                 impact.map_or(R::zero(), |impact| impact.approach)
             }
@@ -195,15 +161,49 @@ impl<R: Real> FlightSimulation<R> {
         runs_away.then(|| self.collapse(body, agenda.planned.deed))
     }
 
-    fn note(&mut self, kind: EventKind, impulse: R, log: &mut Option<&mut EventLog>) {
+    /// What the bodies of an event are about to do beside it, where that is watched.
+    fn foresee(&self, kind: EventKind) -> Option<Vec<(EventKind, R)>> {
+        let watch = self.watch.as_ref()?;
+        let mut foreseen = watch.foresee(&self.world, kind);
+        foreseen.retain(|(other, _)| *other != kind);
+        foreseen.push((kind, R::zero()));
+        Some(foreseen)
+    }
+
+    /// Notes what nearly fell on the instant of an event, and what it has set off at once.
+    fn watch(&mut self, kind: EventKind, foreseen: Option<Vec<(EventKind, R)>>) {
+        let (Some(watch), Some(foreseen)) = (&mut self.watch, foreseen) else {
+            return;
+        };
+        watch.noted.note(self.world.now, &foreseen);
+        let set_off = watch.foresee(&self.world, kind);
+        watch.noted.note(self.world.now, &set_off);
+    }
+
+    fn note(&mut self, kind: EventKind, impact: Impact<R>, log: &mut Option<&mut EventLog>) {
+        let Impact { impulse, approach } = impact;
         self.events += 1;
         if let Some(log) = log {
+            // A stop is no impact, whatever comes of it.
+            self.series
+                .extend(Some(approach.to_f64()).filter(|it| it.is_finite()));
             log.push(Event {
                 time: self.world.now.to_f64(),
                 kind,
                 impulse: impulse.to_f64(),
             });
         }
+    }
+
+    /// Sums the impacts of an instant that is over where their series had no end.
+    fn end_series(&mut self, log: &mut Option<&mut EventLog>) {
+        if let Some(log) = log {
+            if is_endless(self.series.iter().copied()) {
+                log.sum_from(self.series_from);
+            }
+            self.series_from = log.events().len();
+        }
+        self.series.clear();
     }
 
     fn collapse(&self, body: usize, deed: Deed) -> Outcome {

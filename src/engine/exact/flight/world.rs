@@ -87,11 +87,7 @@ impl<R: Real> World<R> {
             Grid::new(&positions, radius_max)
         });
         Self {
-            tie: match order {
-                TieOrder::Rule => model.tie,
-                // To ask whether order matters, all that might be simultaneous is.
-                TieOrder::Backwards | TieOrder::Drawn(_) => model.near,
-            },
+            tie: model.tie,
             model,
             order,
             balls: balls.collect(),

@@ -3,16 +3,18 @@
 use super::accuracy::Accuracy;
 use super::scalar::Wide;
 use super::simulation::{ForcesSimulation, Undetermined};
+use super::ties::Judge;
 use crate::engine::Simulation;
 use crate::engine::exact::Certified;
 use crate::engine::exact::claim::{Scale, claims};
 use crate::engine::exact::order::TieOrder;
 use crate::engine::exact::parting::{Parting, SAFETY};
+use crate::engine::exact::ties::{Noted, SAME};
 use crate::error::Result;
 use crate::physics::BodyState;
 use crate::physics::real::Real;
 use crate::recording::{
-    self, COMPARABLE_DIGITS, EventLog, Outcome, Recording, Work, initial_states,
+    self, COMPARABLE_DIGITS, Digits, EventLog, Outcome, Recording, Work, initial_states,
 };
 use crate::scene::Scene;
 
@@ -57,7 +59,8 @@ const WITNESSES_MAX: u64 = 3;
 /// # Errors
 /// As [`ForcesSimulation::new`].
 pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
-    let mut published = Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?;
+    let mut published =
+        Voice::new(scene, [Accuracy::WIDE, Accuracy::FAST], operations)?.watched(scene);
     let mut seed = 1;
     let mut witness = Some(Voice::witness(scene, operations, seed)?);
     let mut recording = Recording::at_start(VOICE, scene);
@@ -122,19 +125,61 @@ pub fn certified(scene: &Scene, operations: u64) -> Result<Certified> {
         sample += 1;
     }
     recording.work = published.work();
-    let undetermined = match published.undetermined() {
+    let (digits, undetermined) = judged(scene, &recording, errors, (&published, operations))?;
+    Ok(Certified {
+        recording,
+        digits,
+        undetermined,
+    })
+}
+
+/// The digits that are left by these errors, and where the model has no single answer, if
+/// anywhere: where another order of simultaneous or nearly simultaneous impacts decides.
+fn judged(
+    scene: &Scene,
+    recording: &Recording,
+    mut errors: Vec<Parting>,
+    (published, operations): (&Voice, u64),
+) -> Result<(Vec<Digits>, Option<recording::Undetermined>)> {
+    let scale = Scale::of(recording);
+    let mut undetermined = match published.undetermined() {
         Some(from) => Some(recording::Undetermined {
             time: from.time,
             bodies: from.bodies.to_vec(),
-            spread: Some(spread(scene, &recording, from.time, operations)?),
+            spread: Some(spread(scene, recording, from.time, operations)?),
         }),
         None => None,
     };
-    Ok(Certified {
-        digits: claims(&errors, &Scale::of(&recording)),
+    if let Some(from) = &undetermined
+        && let Some(spread) = from.spread.filter(|it| *it <= SAME * scale.diagonal)
+    {
+        // One answer, with as many digits as the orders share.
+        for (sample, error) in errors.iter_mut().enumerate() {
+            if scene.sample_time(sample) >= from.time {
+                error.position += SAFETY * spread;
+            }
+        }
+        undetermined = None;
+    }
+    let digits = claims(&errors, &scale);
+    let certain = |sample: &usize| {
+        digits[*sample].position >= COMPARABLE_DIGITS
+            && !undetermined
+                .as_ref()
+                .is_some_and(|from| scene.sample_time(*sample) >= from.time)
+    };
+    let judge = Judge {
+        scene,
         recording,
-        undetermined,
-    })
+        scale: &scale,
+        noted: published.noted(),
+        known: (0..digits.len()).take_while(certain).count(),
+        operations,
+    };
+    if let Some(found) = judge.judge()? {
+        undetermined = Some(found);
+    }
+    Ok((digits, undetermined))
 }
 
 /// How far the impacts in the opposite order lead away, from a time on, over all bodies.
@@ -166,6 +211,8 @@ struct Voice {
     before: Work,
     undetermined: Option<Undetermined>,
     unsettled: bool,
+    /// What nearly fell on one instant while it was wide.
+    noted: Option<Noted<Wide>>,
     /// The lot by which its inputs are moved, if they are.
     moved_by: Option<u64>,
 }
@@ -218,8 +265,22 @@ impl Voice {
             before: Work::default(),
             undetermined: None,
             unsettled: false,
+            noted: None,
             moved_by: None,
         })
+    }
+
+    /// The same with an eye on impacts that nearly fall on one instant.
+    fn watched(mut self, scene: &Scene) -> Self {
+        self.noted = Some(Noted::new(scene.duration));
+        self.wide = self.wide.map(ForcesSimulation::watched);
+        self
+    }
+
+    fn noted(&self) -> Noted<Wide> {
+        let now = self.wide.as_ref().and_then(|wide| wide.watch.as_deref());
+        let none = || Noted::new(0.0);
+        now.or(self.noted.as_ref()).cloned().unwrap_or_else(none)
     }
 
     fn is_wide(&self) -> bool {
@@ -273,6 +334,9 @@ impl Voice {
             self.undetermined = wide.undetermined().filter(kept);
             self.unsettled = wide.is_unsettled();
             self.before = wide.work();
+            if let Some(watch) = &wide.watch {
+                self.noted = Some(watch.up_to(scene.sample_time(sample)));
+            }
             self.double.set_state(sample, states);
             if let Some(seed) = self.moved_by {
                 self.double.move_inputs(NUDGE_DOUBLE, seed);

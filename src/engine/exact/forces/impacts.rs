@@ -6,7 +6,9 @@ use super::scalar::{Real, Triple, dot, minus, size};
 use super::search::{Cause, Fresh};
 use super::series::{as_real, contact_matrix};
 use super::touch::{Arms, Surfaces, Touch, arms};
+use crate::engine::exact::instant::is_endless;
 use crate::engine::exact::order::TieOrder;
+use crate::engine::exact::ties::Foreseen;
 use crate::physics::Meter;
 use crate::physics::cholesky::Cholesky;
 use crate::physics::complementarity::{Role, pressing};
@@ -37,12 +39,16 @@ const SHORT_BOUNCE: f64 = 1e3;
 pub(super) struct Impact {
     pub(super) touch: Touch,
     pub(super) impulse: f64,
+    /// Speed of approach before it.
+    approach: f64,
 }
 
 /// What an instant leaves behind.
 #[derive(Debug, Default)]
 pub(super) struct Aftermath {
     pub(super) impacts: Vec<Impact>,
+    /// Whether they are the beginning of a series without end.
+    pub(super) endless: bool,
     /// Contacts that press from here on.
     pub(super) held: Vec<Touch>,
     /// Contacts that those keep closed.
@@ -70,6 +76,8 @@ pub(super) struct Instant<'a, T> {
     /// The contacts that pressed until now.
     pub(super) held: &'a [Touch],
     pub(super) trigger: Option<(Touch, Cause)>,
+    /// Gaps that close within this time, at most, count as closed, s.
+    pub(super) within: f64,
 }
 
 /// Touching surfaces with what impacts between them need.
@@ -86,8 +94,11 @@ struct Meeting<T> {
 
 impl<T: Real> Meeting<T> {
     /// Below this speed of approach the pair sticks.
+    ///
+    /// A pair without restitution leaves with no speed whatever it came with: its impacts take
+    /// their turn among the others like any.
     fn stick_speed(&self) -> f64 {
-        if self.least_bounce == 0.0 {
+        if self.least_bounce == 0.0 || self.restitution <= T::zero() {
             return 0.0;
         }
         self.least_bounce / self.restitution.to_f64()
@@ -95,6 +106,26 @@ impl<T: Real> Meeting<T> {
 }
 
 impl<T: Real> Instant<'_, T> {
+    /// What the bodies of a touch are about to meet, and when, if they go on at these velocities.
+    pub(super) fn foresee(
+        &self,
+        of: Touch,
+        velocity: &[Triple<T>],
+        within: f64,
+    ) -> Vec<Foreseen<T>> {
+        let fastest = velocity.iter().map(size).fold(0.0, f64::max);
+        let noise = 64.0 * T::ROUNDING * fastest;
+        let shares = |touch: &Touch| touch.bodies().iter().any(|body| of.bodies().contains(body));
+        let foreseen = self.surfaces.all().filter(shares).filter_map(|touch| {
+            let reach = T::from_f64(self.surfaces.reach(touch));
+            let approach = -arms(touch, self.position).rate(velocity) / reach;
+            let gap = self.surfaces.gap(touch, self.position);
+            let near = approach.to_f64() > noise && gap.to_f64() <= within * approach.to_f64();
+            near.then(|| (touch.event(), gap / approach))
+        });
+        foreseen.collect()
+    }
+
     /// Changes the velocities by every impact of this instant.
     pub(super) fn resolve(&self, velocity: &mut [Triple<T>]) -> Aftermath {
         let meetings = self.meetings(velocity);
@@ -104,6 +135,7 @@ impl<T: Real> Instant<'_, T> {
         let in_order: Vec<usize> = (0..meetings.len()).collect();
         let impacts = self.sweeps(&meetings, &in_order, noise, velocity);
         let mut aftermath = Aftermath {
+            endless: is_endless(impacts.iter().map(|impact| impact.approach)),
             impacts,
             ..Aftermath::default()
         };
@@ -179,6 +211,7 @@ impl<T: Real> Instant<'_, T> {
             self.trigger.is_some_and(|(trigger, _)| trigger == *touch)
                 || self.held.contains(touch)
                 || self.closed(*touch)
+                || self.falls_together(*touch, velocity)
         });
         let meeting = |touch: Touch| {
             let arms = arms(touch, self.position);
@@ -235,6 +268,17 @@ impl<T: Real> Instant<'_, T> {
         gap <= closed_below::<T>(far[0].max(far[1])).max(least_bounce)
     }
 
+    /// Whether the gap may close within the time that counts as this instant.
+    fn falls_together(&self, touch: Touch, velocity: &[Triple<T>]) -> bool {
+        let speed: f64 = touch
+            .bodies()
+            .iter()
+            .map(|body| size(&velocity[*body]))
+            .sum();
+        let gap = self.surfaces.gap(touch, self.position).to_f64();
+        self.within > 0.0 && gap <= self.within * speed
+    }
+
     /// Impacts one after the other, sweep by sweep, until nothing approaches that does not stick.
     fn sweeps(
         &self,
@@ -261,6 +305,7 @@ impl<T: Real> Instant<'_, T> {
                 impacts.push(Impact {
                     touch: meeting.touch,
                     impulse: (push * meeting.reach).to_f64(),
+                    approach,
                 });
                 if impacts.len() == IMPACTS_MAX {
                     return impacts;
@@ -301,6 +346,7 @@ impl<T: Real> Instant<'_, T> {
                 aftermath.impacts.push(Impact {
                     touch: meeting.touch,
                     impulse: (push * meeting.reach).to_f64(),
+                    approach: speed,
                 });
             }
         }

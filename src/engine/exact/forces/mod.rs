@@ -23,12 +23,14 @@ mod impacts;
 mod law;
 mod noise;
 mod nudge;
+mod perturb;
 mod refuse;
 mod scalar;
 mod search;
 mod series;
 mod simulation;
 mod span;
+mod ties;
 mod touch;
 mod watchdog;
 

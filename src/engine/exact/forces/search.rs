@@ -185,12 +185,7 @@ fn gap_series<T: Real>(
                 .iter()
                 .map(|x| minus(&x[b], &x[a]))
                 .collect();
-            let mut gap: Vec<T> = (0..d.len())
-                .map(|k| {
-                    let products = d[..=k].iter().zip(d[..=k].iter().rev());
-                    products.fold(T::zero(), |sum, (one, other)| sum + dot(one, other))
-                })
-                .collect();
+            let mut gap = square(&d);
             let reach = if reach > surfaces.reach(touch) {
                 T::from_f64(reach)
             } else {
@@ -210,6 +205,19 @@ fn gap_series<T: Real>(
             gap
         }
     }
+}
+
+/// `d . d` of a polynomial, up to its own order; flights without forces but gravity end early.
+fn square<T: Real>(d: &[Triple<T>]) -> Vec<T> {
+    let is_there = |d: &Triple<T>| d.iter().any(|x| !x.is_zero());
+    let last = d.iter().rposition(is_there).unwrap_or(0);
+    let coefficient = |k: usize| {
+        let (from, to) = (k.saturating_sub(last), k.min(last));
+        (from..=to).fold(T::zero(), |sum, i| sum + dot(&d[i], &d[k - i]))
+    };
+    // A contact that has just opened leaves out the first three.
+    let count = d.len().min((2 * last + 1).max(4));
+    (0..count).map(coefficient).collect()
 }
 
 /// Where a polynomial in u falls through zero on `0 <= u <= span`.

@@ -14,6 +14,7 @@ use super::watchdog::Watchdog;
 use crate::engine::Simulation;
 use crate::engine::exact::effort::Effort;
 use crate::engine::exact::order::TieOrder;
+use crate::engine::exact::ties::Noted;
 use crate::error::Result;
 use crate::physics::BodyState;
 use crate::physics::cholesky::Cholesky;
@@ -65,6 +66,19 @@ pub struct ForcesSimulation<T: Real> {
     is_patient: bool,
     work: Work,
     pub(super) effort: Effort,
+    /// What nearly falls on one instant, where that is asked for.
+    pub(super) watch: Option<Box<Noted<T>>>,
+    together: Option<Together>,
+}
+
+/// Events that are taken as one instant, in an order of their own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Together {
+    /// Events between these two times, s.
+    pub(super) between: [f64; 2],
+    /// With those that follow within this time, s.
+    pub(super) within: f64,
+    pub(super) order: TieOrder,
 }
 
 /// An instant at which another order of simultaneous impacts would have given another answer:
@@ -145,9 +159,29 @@ impl<T: Real> ForcesSimulation<T> {
             is_patient: false,
             work: Work::default(),
             effort: Effort::limited(u64::MAX),
+            watch: None,
+            together: None,
         };
         simulation.set_state(0, &initial_states(scene));
         Ok(simulation)
+    }
+
+    /// The same with an eye on impacts that nearly fall on one instant.
+    pub(super) fn watched(mut self) -> Self {
+        self.watch = Some(Box::new(Noted::new(self.duration)));
+        self
+    }
+
+    /// The same with events that are taken together.
+    pub(super) fn with_together(mut self, together: Together) -> Self {
+        self.together = Some(together);
+        self
+    }
+
+    /// Goes on to a time between samples; false if it ends before.
+    pub(super) fn reaches(&mut self, time: f64) -> bool {
+        self.reach(time, None);
+        self.outcome.is_none()
     }
 
     /// The same with simultaneous impacts in that order.
@@ -252,18 +286,29 @@ impl<T: Real> ForcesSimulation<T> {
     fn resolve(&mut self, trigger: Option<(Touch, Cause)>, log: Option<&mut EventLog>) {
         let position = self.positions();
         let mut velocity = self.velocities();
+        let now = self.time.sum.to_f64();
+        let at_once = |it: &Together| it.between[0] <= now && now <= it.between[1];
+        let together = self.together.filter(at_once);
         let instant = Instant {
             law: &self.law,
             surfaces: &self.surfaces,
             bounce_height: self.bounce_height(),
             sample_every: self.sample_every,
-            order: self.order,
+            order: together.map_or(self.order, |it| it.order),
             position: &position,
             held: &self.held,
             trigger,
+            within: together.map_or(0.0, |it| it.within),
         };
+        let watched = self.watch.as_ref().zip(trigger);
+        let watched = watched.map(|(watch, (touch, _))| (touch, watch.within()));
+        let foresee = |velocity: &[Triple<T>]| {
+            watched.map(|(touch, within)| instant.foresee(touch, velocity, within))
+        };
+        let before = foresee(&velocity);
         let Aftermath {
             impacts,
+            endless,
             held,
             idle,
             fresh,
@@ -271,6 +316,13 @@ impl<T: Real> ForcesSimulation<T> {
             in_cluster,
             operations,
         } = instant.resolve(&mut velocity);
+        if !impacts.is_empty()
+            && let (Some(before), Some(after)) = (before, foresee(&velocity))
+            && let Some(watch) = &mut self.watch
+        {
+            watch.note(self.time.sum, &before);
+            watch.note(self.time.sum, &after);
+        }
         self.set_velocities(&velocity);
         self.effort.add::<T>(operations);
         let time = self.time.sum.to_f64();
@@ -283,12 +335,16 @@ impl<T: Real> ForcesSimulation<T> {
             self.is_unsettled |= in_cluster;
         }
         if let Some(log) = log {
+            let first = log.events().len();
             for impact in impacts {
                 log.push(Event {
                     time,
                     kind: impact.touch.event(),
                     impulse: impact.impulse,
                 });
+            }
+            if endless {
+                log.sum_from(first);
             }
         }
         self.held = held;
