@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use carom::case::Library;
+use carom::engine::engine;
 use carom::report::{handling_table, support_table};
 use carom::study::stability::Bounded;
 
@@ -47,4 +48,22 @@ fn the_tables_of_fairness_are_those_of_the_engines() {
         stored == page,
         "docs/fairness.md is not up to date; it must be:\n{page}"
     );
+}
+
+/// Where the motion is along the spring both dampers are the same.
+#[test]
+fn dampers_differ_where_the_ends_move_across_the_spring() {
+    let scene = |name: &str| Library::Embedded.case(name).unwrap().scene;
+    let differs = |engine_name: &str, case: &str| {
+        let spec = engine(engine_name).unwrap();
+        spec.another_model(&scene(case)).is_some()
+    };
+    assert!(differs("rapier", "spring-under"));
+    assert!(differs("rapier-tuned", "spring-under"));
+    assert!(!differs("rapier", "spring-under-line"));
+    assert!(!differs("rapier", "spring-under-simple"));
+    assert!(!differs("rapier", "headon-equal"));
+    for name in ["rapier-matched", "lecture", "exact", "robust"] {
+        assert!(!differs(name, "spring-under"), "{name}");
+    }
 }
