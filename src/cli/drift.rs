@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<bool> {
         &args.library.library(),
         &|what, done| {
             bar.set_position(done as u64);
-            bar.set_message(what.to_owned());
+            bar.set_message(what);
         },
     )?;
     bar.finish_and_clear();

@@ -61,7 +61,7 @@ impl ExternalSolver {
     /// `{dt}` for the step; see `docs/your-own-solver.md`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the command is empty or a quote stays open.
+    /// [`Error::Argument`](crate::error::Error::Argument) if the command is empty or a quote stays open.
     pub fn parse(command: &str, limits: Limits) -> Result<Self> {
         let command = SolverCommand::parse(command)?;
         Ok(Self { command, limits })
@@ -77,7 +77,7 @@ impl ExternalSolver {
     /// that the solver is told divides the time between samples.
     ///
     /// # Errors
-    /// [`Error::SolverStart`] if the program cannot be started, [`Error::Solver`] for what it did
+    /// [`Error::SolverStart`](crate::error::Error::SolverStart) if the program cannot be started, [`Error::Solver`](crate::error::Error::Solver) for what it did
     /// wrong: too long, too much, a failure, no trajectory of this scene. Otherwise as
     /// [`prepare`](super::prepare).
     pub fn record(&self, voice: &str, scene: &Scene, dt: f64) -> Result<Recording> {
@@ -92,7 +92,7 @@ impl ExternalSolver {
 /// A trajectory that was made elsewhere, from its file.
 ///
 /// # Errors
-/// [`Error::Read`], or [`Error::Table`] with the line of what is no trajectory of this scene.
+/// [`Error::Read`](crate::error::Error::Read), or [`Error::Table`](crate::error::Error::Table) with the line of what is no trajectory of this scene.
 pub fn trajectory_file(voice: &str, scene: &Scene, path: &Path) -> Result<Recording> {
     let file = input::open(path, trajectory_bytes_max(scene))?;
     trajectory(voice, scene, file, &path.display().to_string())

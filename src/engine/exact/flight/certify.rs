@@ -36,7 +36,7 @@ const DOUBT: f64 = 1e3;
 /// Method: the run is made in double-doubles; two more go along with it, sample by sample, from
 /// inputs moved by 2^-90. How far these part is how errors grow; the claim leaves room for 64
 /// roundings an event and a factor of 10. Where events nearly coincide, their other orders are
-/// compared ([`ties`](crate::engine::exact::ties)).
+/// compared (`ties`).
 /// Units: `operations` bounds each run, in elementary operations.
 ///
 /// # Errors
