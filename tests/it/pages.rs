@@ -92,6 +92,8 @@ impl Page {
                 }
                 Event::Text(said) | Event::Code(said) => words.push_str(&said),
                 Event::InlineHtml(tag) | Event::Html(tag) => page.html(&tag),
+                // The text of a case's own file, whose lines are as long as its writer made them.
+                Event::SoftBreak if page.is_under("Where the truth comes from") => words.push(' '),
                 Event::SoftBreak => page.faults.push(format!(
                     "a line runs on into another block: {:?}",
                     &text[range.start.saturating_sub(0)..text.len().min(range.end + 40)]
@@ -151,6 +153,15 @@ impl Page {
             move |block: &&Block| matches!(block, Block::Heading(h) if h.starts_with(heading));
         let after = self.blocks.iter().skip_while(move |b| !is_there(b)).skip(1);
         after.take_while(|block| !matches!(block, Block::Heading(_)))
+    }
+
+    /// Whether the latest heading is that one.
+    fn is_under(&self, heading: &str) -> bool {
+        let headings = self.blocks.iter().rev().filter_map(|block| match block {
+            Block::Heading(words) => Some(words),
+            Block::List(_) | Block::Table(_) => None,
+        });
+        headings.take(1).any(|words| words == heading)
     }
 
     /// The first column of the first table there, without its header.
