@@ -64,8 +64,7 @@ impl Sizes {
 }
 
 /// The energy that a motion can turn over, see [`Sizes::energy`].
-#[must_use]
-pub fn energy(metrics: &[Metrics]) -> f64 {
+fn energy(metrics: &[Metrics]) -> f64 {
     let potentials: [fn(&Metrics) -> f64; 3] = [
         |at| at.attraction_energy,
         |at| at.spring_energy,
